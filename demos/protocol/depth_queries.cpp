@@ -6,6 +6,7 @@
 #include "pd/depth/difference_queries.hpp"
 #include "pd/depth/linear_separation.hpp"
 #include "pd/depth/polyhedral_depth.hpp"
+#include "pd/solid/solid_depth.hpp"
 #include "protocol/pair_reader.hpp"
 
 namespace pd::query {
@@ -58,6 +59,11 @@ double read_delta(const Node& node) {
   const double delta = read_number(node);
   if (!(delta > 0 && delta <= 1)) node.refuse("bad_value", "delta must lie in (0, 1]");
   return delta;
+}
+
+std::int64_t read_max_points(const Node& line) {
+  const auto node = line.find("max_points");
+  return node ? read_integer(*node, 1, std::int64_t{1} << 40) : SolidSettings().max_points;
 }
 
 void write_statistics(const Statistics& statistics, std::int64_t nanoseconds, JsonWriter& answer) {
@@ -185,7 +191,8 @@ void answer_metric_depth(const Node& line, const Node& metric, Session& session,
 }  // namespace
 
 void answer_depth(const Node& line, Session& session, JsonWriter& answer) {
-  allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b", "method", "delta", "metric", "seed"});
+  allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b", "method", "delta", "metric", "seed", "max_points"});
+  (void)read_max_points(line);
   if (const auto metric = line.find("metric")) {
     if (const auto delta_node = line.find("delta")) (void)read_delta(*delta_node);
     if (const auto seed = line.find("seed")) (void)read_integer(*seed, 0, std::int64_t{1} << 53);

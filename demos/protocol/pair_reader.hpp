@@ -33,6 +33,10 @@ struct Pair {
 /// "delta", in (0, 1].
 [[nodiscard]] double read_delta(const Node& node);
 
+/// "max_points", the budget of the depth of two solids; that of `SolidSettings` if it is not given. Other bodies need
+/// none: the number is read for them, so that one form of line serves all bodies.
+[[nodiscard]] std::int64_t read_max_points(const Node& line);
+
 /// Measures the time of a query.
 class Stopwatch {
  public:

@@ -28,6 +28,7 @@ void write_solid_answer(const SolidDepth& result, std::int64_t nanoseconds, Json
   answer.key("triangle_pairs").integer(result.work.triangle_pairs);
   answer.key("parts_a").integer(result.work.parts_a);
   answer.key("parts_b").integer(result.work.parts_b);
+  answer.key("points").integer(result.work.points);
   answer.key("nanoseconds").integer(nanoseconds);
   answer.end_object();
 }
@@ -53,9 +54,8 @@ void answer_by_union(std::string_view query, const Node& line, Session& session,
   find_union_handler(query)(line, session, answer);
 }
 
-void answer_solids(const SolidPair& pair, double delta, const Node& line, Session& session, JsonWriter& answer) {
-  SolidSettings settings;
-  if (delta > 0) settings.delta = delta;
+void answer_solids(const SolidPair& pair, const SolidSettings& settings, const Node& line, Session& session,
+                   JsonWriter& answer) {
   const Stopwatch watch;
   const SolidDepth result =
       value_or_refuse(penetration_depth(pair.posed_a(), pair.posed_b(), session.scratch, settings), line);
@@ -63,7 +63,7 @@ void answer_solids(const SolidPair& pair, double delta, const Node& line, Sessio
 }
 
 void answer_solid_depth(const Node& line, Session& session, JsonWriter& answer) {
-  allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b", "method", "delta", "metric", "seed"});
+  allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b", "method", "delta", "metric", "seed", "max_points"});
   if (const auto node = line.find("method"); node && read_method(*node) != Method::automatic) {
     node->refuse("unsupported", "solids are answered by \"auto\"");
   }
@@ -71,17 +71,19 @@ void answer_solid_depth(const Node& line, Session& session, JsonWriter& answer) 
     node->refuse("unsupported", "a polyhedral metric is for convex polytopes; here lengths are Euclidean");
   }
   if (const auto seed = line.find("seed")) (void)read_integer(*seed, 0, std::int64_t{1} << 53);
-  const auto delta = line.find("delta");
+  SolidSettings settings;
+  if (const auto delta = line.find("delta")) settings.delta = read_delta(*delta);
+  settings.max_points = read_max_points(line);
   const SolidPair pair = read_solids(line, session.limits);
   if (!pair.complete()) return answer_by_union("depth", line, session, answer);
-  answer_solids(pair, delta ? read_delta(*delta) : 0, line, session, answer);
+  answer_solids(pair, settings, line, session, answer);
 }
 
 void answer_solid_distance(const Node& line, Session& session, JsonWriter& answer) {
   allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b"});
   const SolidPair pair = read_solids(line, session.limits);
   if (!pair.complete()) return answer_by_union("distance", line, session, answer);
-  answer_solids(pair, 0, line, session, answer);
+  answer_solids(pair, {}, line, session, answer);
 }
 
 void answer_solid_intersect(const Node& line, Session& session, JsonWriter& answer) {

@@ -68,7 +68,8 @@ UnionDepth solve(const Node& line, const BodyPair& pair, Session& session, const
 }
 
 void answer_union_depth(const Node& line, Session& session, JsonWriter& answer) {
-  allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b", "method", "delta", "metric", "seed"});
+  allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b", "method", "delta", "metric", "seed", "max_points"});
+  (void)read_max_points(line);
   UnionSettings settings;
   if (const auto node = line.find("method"); node && read_method(*node) != Method::automatic) {
     node->refuse("unsupported", "compounds and star-shaped bodies are answered by \"auto\"");

@@ -30,6 +30,7 @@ constexpr Place kPlaces[] = {
     WHOLE(surface), FIELD(surface, points), FIELD(surface, offsets), FIELD(surface, corners),
     WHOLE(settings), FIELD(settings, method), FIELD(settings, bracket), FIELD(settings, use_beyond),
     FIELD(settings, beyond), FIELD(settings, delta), FIELD(settings, contact_tolerance), FIELD(settings, seed),
+    FIELD(settings, max_points),
     WHOLE(question), FIELD(question, a), FIELD(question, b), FIELD(question, pose_a), FIELD(question, pose_b),
     FIELD(question, settings), FIELD(question, pair),
     WHOLE(feature), FIELD(feature, kind), FIELD(feature, part), FIELD(feature, first), FIELD(feature, second),

@@ -151,6 +151,8 @@ export interface Settings {
   delta?: number;
   contactTolerance?: number;
   seed?: number | bigint;
+  /** The budget of two solids with many convex parts; 500,000 by default. Where it ends the search, `bracketReached` is false. */
+  maxPoints?: number;
 }
 export interface PairOptions extends Settings { pair?: Pair; }
 

@@ -223,7 +223,7 @@ function fillPose(into, pose, place) {
   for (let i = 0; i < numbers.length; ++i) doubles[first + i] = readNumber(numbers[i], `${place}[${i}]`);
 }
 
-const kSettings = ['method', 'bracket', 'beyond', 'delta', 'contactTolerance', 'seed'];
+const kSettings = ['method', 'bracket', 'beyond', 'delta', 'contactTolerance', 'seed', 'maxPoints'];
 
 /** Writes settings of the caller as a pdepth_settings. Returns its place, or 0 for none. */
 function writeSettings(settings) {
@@ -248,6 +248,9 @@ function writeSettings(settings) {
   if (settings.seed !== undefined) {
     if (typeof settings.seed !== 'bigint') readWhole(settings.seed, 0, 'settings.seed');
     longs[(out + at.settings.seed) >> 3] = BigInt(settings.seed);
+  }
+  if (settings.maxPoints !== undefined) {
+    longs[(out + at.settings.max_points) >> 3] = BigInt(readWhole(settings.maxPoints, 1, 'settings.maxPoints'));
   }
   return out;
 }

@@ -126,7 +126,9 @@ TEST_F(CErrors, OfSettings) {
   refused(ask(), PDEPTH_BAD_VALUE, "settings.contact_tolerance");
   settings.contact_tolerance = 0, settings.use_beyond = 1, settings.beyond = kNan;
   refused(ask(), PDEPTH_BAD_VALUE, "settings.beyond");
-  settings.use_beyond = 0, settings.method = PDEPTH_METHOD_DECOMPOSITION;
+  settings.use_beyond = 0, settings.max_points = -1;
+  refused(ask(), PDEPTH_BAD_VALUE, "settings.max_points");
+  settings.max_points = 0, settings.method = PDEPTH_METHOD_DECOMPOSITION;
   const Shape ball = make_shape(context_, &pdepth_sphere, 1.0);
   const std::array<double, 3> radii{1, 2, 3};
   const Shape egg = make_shape(context_, &pdepth_ellipsoid, radii.data());

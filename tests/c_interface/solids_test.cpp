@@ -119,6 +119,25 @@ TEST_F(CSolids, AnswersAreThoseOfCpp) {
   EXPECT_GT(contacts[PDEPTH_OVERLAPPING], 2);
 }
 
+TEST_F(CSolids, TheBudgetIsTheCallers) {
+  std::mt19937_64 random(77);
+  const Mesh mesh = test::mesh_of(test::random_star(random, 2, Vec3::Zero()));
+  const Shape star = solid(context_, mesh);
+  const MeshSolid twin = *MeshSolid::from_faces(mesh.view());
+  const Pose pose = *Pose::from_quaternion({0.36, 0.48, -0.64, 0.48}, {0.7, 0.5, 0.25});
+  Scratch scratch;
+  auto settings = sized<pdepth_settings>();
+  settings.max_points = 3000;
+  pdepth_question question = question_of(star.get(), star.get());
+  question.pose_b = pose_of(pose);
+  question.settings = &settings;
+  auto answer = sized<pdepth_answer>();
+  ASSERT_EQ(pdepth_depth(context_.get(), &question, &answer), PDEPTH_OK) << error_of(context_);
+  EXPECT_EQ(answer.bracket_reached, 0);
+  expect_bits(answer,
+              *penetration_depth(PosedSolid{&twin, Pose()}, PosedSolid{&twin, pose}, scratch, {.max_points = 3000}));
+}
+
 TEST_F(CSolids, PartsServeWhereTheMeshCannot) {
   const Mesh mesh = test::mesh_of(kHook);
   const Shape hook = solid(context_, mesh);

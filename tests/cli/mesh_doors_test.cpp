@@ -210,6 +210,53 @@ TEST_F(MeshDoors, AMeshThatIsNotConvexIsAskedAsTheSolid) {
   EXPECT_EQ(manifold.value("a_is", ""), "solid") << manifold;
 }
 
+/// A torus whose radius rises and falls, of 98 triangles: more convex parts than a depth is told by.
+std::string wavy_torus_obj() {
+  constexpr int kAround = 7;
+  std::string text;
+  for (int i = 0; i < kAround * kAround; ++i) {
+    const double u = 2 * M_PI / kAround * (i / kAround), v = 2 * M_PI / kAround * (i % kAround);
+    const double r = 1 + 0.05 * std::sin(9 * u + 7 * v), reach = 3 + r * std::cos(v);
+    for (const double x : {reach * std::cos(u), reach * std::sin(u), r * std::sin(v)}) {
+      text += (text.empty() || text.back() == '\n' ? "v " : " ") + std::to_string(x);
+    }
+    text += "\n";
+  }
+  for (int i = 0; i < kAround * kAround; ++i) {
+    const auto vertex = [&](int u, int v) {
+      return " " + std::to_string(1 + (i / kAround + u) % kAround * kAround + (i % kAround + v) % kAround);
+    };
+    text +=
+        "f" + vertex(0, 0) + vertex(1, 0) + vertex(1, 1) + "\nf" + vertex(0, 0) + vertex(1, 1) + vertex(0, 1) + "\n";
+  }
+  return text;
+}
+
+TEST_F(MeshDoors, TheBudgetOfADepthIsTheCallers) {
+  const std::string torus = mesh(write("torus.obj", wavy_torus_obj()));
+  const std::string pose = R"("pose_b":{"translation":[2.4,0,0]})";
+  const Json asked = answer(depth_line(torus, torus, pose + R"(,"max_points":2000)"));
+  EXPECT_EQ(asked.at("class"), "overlapping") << asked;
+  EXPECT_EQ(asked.value("bracket_reached", true), false) << asked;
+  EXPECT_LE(asked.at("stats").at("points"), 4000) << asked;
+  const Json full = answer(depth_line(torus, torus, pose));
+  EXPECT_FALSE(full.contains("bracket_reached")) << full;
+  EXPECT_GT(full.at("stats").at("points"), 4000) << full;
+  EXPECT_LE(asked.at("lower"), full.at("lower"));
+  EXPECT_GE(asked.at("upper"), full.at("lower"));
+  // Bodies that need no budget take the number all the same, and no body takes a wrong one.
+  const std::string compound = R"({"type":"compound","parts":[{"shape":)" + std::string(kUnitBox) + "}]}";
+  for (const std::string& body : {torus, mesh(cube_), std::string(kUnitBox), compound}) {
+    const Json taken = answer(depth_line(body, kUnitBox, R"("max_points":2000)"));
+    EXPECT_FALSE(taken.contains("error")) << taken;
+    for (const char* wrong : {"0", "-1", "1.5", "2e12", "\"many\""}) {
+      const Json refused = answer(depth_line(body, kUnitBox, R"("max_points":)" + std::string(wrong)));
+      EXPECT_EQ(code_of(refused), "bad_value") << refused;
+      EXPECT_EQ(where_of(refused), "max_points") << refused;
+    }
+  }
+}
+
 TEST_F(MeshDoors, HullsSayThatTheyAreHulls) {
   for (const std::string& hull : {mesh(cloud_), mesh(cube_, R"(,"as":"hull")"), mesh(angle_, R"(,"as":"hull")"),
                                   mesh(angle_, R"(,"margin":0.1,"as":"hull")")}) {

@@ -289,3 +289,23 @@ def test_parallel_faces_have_a_direction_and_no_witness():
     assert found.by_b[:3].tolist() == [0, 0, -1] and np.isnan(found.by_b[3:]).all()
     tie = pdepth.derivatives(BOX, BOX)
     assert not tie.unique_direction and np.isnan(tie.by_a).all()
+
+
+def test_the_budget_of_two_solids_is_the_callers(tmp_path):
+    n = 7
+    u, v = np.meshgrid(*[2 * np.pi * np.arange(n) / n] * 2, indexing="ij")
+    r = 1 + 0.05 * np.sin(9 * u + 7 * v)
+    points = np.stack([(3 + r * np.cos(v)) * np.cos(u), (3 + r * np.cos(v)) * np.sin(u), r * np.sin(v)], axis=-1)
+    at = np.arange(1, n * n + 1).reshape(n, n)
+    i, j, k = np.roll(at, -1, 0), np.roll(at, -1, 1), np.roll(at, (-1, -1), (0, 1))
+    faces = np.concatenate([np.stack([at, i, k], -1).reshape(-1, 3), np.stack([at, k, j], -1).reshape(-1, 3)])
+    path = tmp_path / "torus.obj"
+    path.write_text("".join("v {} {} {}\n".format(*p) for p in points.reshape(-1, 3)) +
+                    "".join("f {} {} {}\n".format(*f) for f in faces))
+    mesh = {"type": "mesh", "path": str(path)}
+    found = pdepth.query("depth", a=mesh, b=mesh, pose_b=pdepth.Pose(translation=[2.4, 0, 0]), max_points=2000)
+    assert found.bracket_reached is False and found.stats["points"] < 4000
+    assert 0 < found.lower < found.upper
+    with pytest.raises(pdepth.Refused) as refused:
+        pdepth.query("depth", a=mesh, b=mesh, max_points=0)
+    assert (refused.value.code, refused.value.where) == ("bad_value", "max_points")

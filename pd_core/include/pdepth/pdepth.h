@@ -234,11 +234,14 @@ typedef struct pdepth_settings {
   /// distance_lower > beyond, and witnesses that are no closest points. Compounds ignore it.
   int32_t use_beyond;
   double beyond;
-  /// Relative error in (0, 1] where the answer is approximate. 0: 1e-6 for curved bodies, 1e-2 for compounds with
-  /// curved or swept parts, and exact for the rest.
+  /// Relative error in (0, 1] where the answer is approximate. 0: 1e-6 for curved bodies, 1e-2 for solids and for
+  /// compounds with curved or swept parts, and exact for the rest.
   double delta;
   double contact_tolerance;  ///< for PDEPTH_BRACKET_CONTACT: an interval of this width is narrow enough; >= 0
   uint64_t seed;             ///< of the decomposition's random order: times depend on it, answers do not
+  /// The budget of two solids with many convex parts that overlap: points whose distances from both surfaces are asked,
+  /// some 5 to 15 microseconds each. Where it ends the search, `bracket_reached` is 0. 0: 500,000. Others ignore it.
+  int64_t max_points;
 } pdepth_settings;
 
 /// The memory of one pair of bodies from frame to frame, opaque. It makes the next answer quicker.
@@ -308,7 +311,8 @@ typedef struct pdepth_answer {
 /// Once the context has grown, two convex bodies allocate nothing, unless exact arithmetic is needed (`exact_signs`).
 /// Compounds and solids allocate. Time: near-linear in the number of vertices at worst, as measured; logarithmic for
 /// shallow contacts. With compounds: one query for each pair of parts whose boxes meet, then at worst O(m^3 n^3) cuts.
-/// Solids: pairs of triangles whose boxes meet; where they overlap, both are cut into parts, and as compounds.
+/// Solids: pairs of triangles whose boxes meet; where they overlap, both are cut into parts, and as compounds, or
+/// `max_points` of the settings.
 pdepth_status pdepth_depth(pdepth_context* context, const pdepth_question* question, pdepth_answer* answer);
 
 /// Tells if two bodies are apart by more than `distance` >= 0: the question of a broadphase.

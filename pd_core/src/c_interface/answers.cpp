@@ -85,10 +85,9 @@ bool answered_by_meshes(const Question& question, Workspace& space, pdepth_answe
   const AsSolid a(question.a), b(question.b);
   if (a.get() == nullptr || b.get() == nullptr) return false;
   require_automatic(question);
-  const SolidSettings settings{.delta = question.settings.of_unions.delta};
   const SolidDepth found =
       value_of(penetration_depth(PosedSolid{a.get(), question.posed_a.pose}, PosedSolid{b.get(), question.posed_b.pose},
-                                 space.scratch, settings),
+                                 space.scratch, question.settings.of_solids),
                "question");
   write_depth(found, out);
   out.feature_a = a.feature(found.face_a);

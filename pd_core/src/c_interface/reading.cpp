@@ -112,7 +112,11 @@ const Settings& read_settings(const pdepth_settings* settings, SettingsRoom& roo
     if (!(read.beyond >= 0)) refuse(PDEPTH_BAD_VALUE, "must be a length >= 0", "settings.beyond");
     made.depth.beyond = read.beyond;
   }
-  if (read.delta > 0) made.of_unions.delta = read.delta;
+  if (read.delta > 0) made.of_unions.delta = made.of_solids.delta = read.delta;
+  if (read.max_points < 0) {
+    refuse(PDEPTH_BAD_VALUE, "must be above 0, or be 0 for the default", "settings.max_points");
+  }
+  if (read.max_points > 0) made.of_solids.max_points = read.max_points;
   return made;
 }
 

@@ -9,6 +9,7 @@
 #include "pd/compound/compound_depth.hpp"
 #include "pd/depth/depth_answer.hpp"
 #include "pd/shape/convex_shape.hpp"
+#include "pd/solid/solid_depth.hpp"
 
 namespace pd::c_interface {
 
@@ -67,6 +68,7 @@ void require_length(double value, const char* argument);
 struct Settings {
   DepthSettings depth;
   UnionSettings of_unions;
+  SolidSettings of_solids;
 };
 
 /// Room for settings that a call brings along, filled only then.
