@@ -316,12 +316,13 @@ void print_body(std::string_view name, const std::string& word, const SolidBody&
 }
 
 void print_solids(const DepthArguments& arguments, const SolidBody& a, const SolidBody& b, const SolidDepth& result,
-                  std::int64_t nanoseconds) {
+                  std::int64_t nanoseconds, bool fits_exactly) {
   fmt::print("\n");
   print_body("A", arguments.file_a, a);
   print_body("B", arguments.file_b, b);
   print_sentence("A and B", result.contact);
   print_answer(result);
+  if (fits_exactly) print_row("seat", "A fits exactly: it can only slide, if it can move at all");
   if (result.face_a >= 0 && result.face_b >= 0) {
     print_row("of A", fmt::format("face {}", result.face_a));
     print_row("of B", fmt::format("face {}", result.face_b));
@@ -347,13 +348,15 @@ int run_solids(const DepthArguments& arguments, const SolidBody& a, const SolidB
   const SolidDepth result = *penetration_depth(posed_a, posed_b, scratch);
   const std::int64_t nanoseconds = watch.nanoseconds();
   if (!arguments.json) {
-    print_solids(arguments, a, b, result, nanoseconds);
+    const Expected<bool> seat = is_seat(posed_a, posed_b);
+    print_solids(arguments, a, b, result, nanoseconds, seat && *seat);
     return kDone;
   }
   std::string out;
   query::JsonWriter writer(out);
   writer.begin_object();
   query::write_solid_answer(result, nanoseconds, writer);
+  if (result.contact == ContactClass::touching) query::write_seat(posed_a, posed_b, writer);
   if (!a.convex) writer.key("a_is").string("solid");
   if (!b.convex) writer.key("b_is").string("solid");
   writer.end_object();

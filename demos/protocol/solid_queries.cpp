@@ -33,6 +33,16 @@ void write_solid_answer(const SolidDepth& result, std::int64_t nanoseconds, Json
   answer.end_object();
 }
 
+void write_seat(const PosedSolid& a, const PosedSolid& b, JsonWriter& answer) {
+  const Expected<bool> seat = is_seat(a, b);
+  answer.key("seat");
+  if (seat) {
+    answer.boolean(*seat);
+  } else {
+    answer.null();
+  }
+}
+
 namespace {
 
 /// Two solids where they stand; one of them is missing where it is neither a mesh nor a polytope.
@@ -60,6 +70,7 @@ void answer_solids(const SolidPair& pair, const SolidSettings& settings, const N
   const SolidDepth result =
       value_or_refuse(penetration_depth(pair.posed_a(), pair.posed_b(), session.scratch, settings), line);
   write_solid_answer(result, watch.nanoseconds(), answer);
+  if (result.contact == ContactClass::touching) write_seat(pair.posed_a(), pair.posed_b(), answer);
 }
 
 void answer_solid_depth(const Node& line, Session& session, JsonWriter& answer) {

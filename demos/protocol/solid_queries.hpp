@@ -12,6 +12,9 @@ namespace pd::query {
 /// The fields of a depth answer about solids from "class" to "stats".
 void write_solid_answer(const SolidDepth& result, std::int64_t nanoseconds, JsonWriter& answer);
 
+/// The field "seat" of two solids that touch; null where it cannot be told.
+void write_seat(const PosedSolid& a, const PosedSolid& b, JsonWriter& answer);
+
 /// The handler of a query of two bodies of which one is a mesh asked as a solid; nullptr where the query has none.
 [[nodiscard]] Handler find_solid_handler(std::string_view query);
 

@@ -257,6 +257,24 @@ TEST_F(MeshDoors, TheBudgetOfADepthIsTheCallers) {
   }
 }
 
+TEST_F(MeshDoors, ASolidThatFitsExactlyIsInASeat) {
+  // A cube in a U of exactly its width, and in the corner of the L.
+  const std::string notch =
+      mesh(write("notch.obj",
+                 "v 0 0 0\nv 3 0 0\nv 3 2 0\nv 2 2 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\n"
+                 "v 0 0 1\nv 3 0 1\nv 3 2 1\nv 2 2 1\nv 2 1 1\nv 1 1 1\nv 1 2 1\nv 0 2 1\n"
+                 "f 8 7 6 5 4 3 2 1\nf 9 10 11 12 13 14 15 16\nf 1 2 10 9\nf 2 3 11 10\nf 3 4 12 11\n"
+                 "f 4 5 13 12\nf 5 6 14 13\nf 6 7 15 14\nf 7 8 16 15\nf 8 1 9 16\n"));
+  const std::string in_place = R"("pose_a":{"translation":[1,1,0]})";
+  const Json seated = answer(depth_line(mesh(cube_), notch, in_place));
+  EXPECT_EQ(seated.at("class"), "touching") << seated;
+  EXPECT_EQ(seated.at("seat"), true) << seated;
+  EXPECT_EQ(answer(depth_line(mesh(cube_), mesh(angle_), in_place)).at("seat"), false);
+  EXPECT_FALSE(answer(depth_line(mesh(cube_), notch, R"("pose_a":{"translation":[1,4,0]})")).contains("seat"));
+  expect_words(run("depth cube.obj notch.obj --pose-a 1,1,0").out, {"touch", "A fits exactly"});
+  EXPECT_EQ(run("depth cube.obj angle.obj --pose-a 1,1,0").out.find("fits exactly"), std::string::npos);
+}
+
 TEST_F(MeshDoors, HullsSayThatTheyAreHulls) {
   for (const std::string& hull : {mesh(cloud_), mesh(cube_, R"(,"as":"hull")"), mesh(angle_, R"(,"as":"hull")"),
                                   mesh(angle_, R"(,"margin":0.1,"as":"hull")")}) {

@@ -238,9 +238,10 @@ typedef struct pdepth_settings {
   /// compounds with curved or swept parts, and exact for the rest.
   double delta;
   double contact_tolerance;  ///< for PDEPTH_BRACKET_CONTACT: an interval of this width is narrow enough; >= 0
-  uint64_t seed;             ///< of the decomposition's random order: times depend on it, answers do not
-  /// The budget of two solids with many convex parts that overlap: points whose distances from both surfaces are asked,
-  /// some 5 to 15 microseconds each. Where it ends the search, `bracket_reached` is 0. 0: 500,000. Others ignore it.
+  /// The random order of the decomposition: times depend on it, answers do not.
+  uint64_t seed;
+  /// The budget of two solids that overlap and have many convex parts, in points of some 5 to 15 microseconds each. If
+  /// the budget ends the search, `bracket_reached` is 0. 0: 500,000 points. Other bodies ignore it.
   int64_t max_points;
 } pdepth_settings;
 

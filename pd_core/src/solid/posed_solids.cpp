@@ -189,6 +189,11 @@ int PosedSolids::orient2d(int axis, const PosedPoint& p, const PosedPoint& q, co
   return (coordinate(u, i) * coordinate(v, j) - coordinate(u, j) * coordinate(v, i)).sign();
 }
 
+Dyadic3 PosedSolids::exact_way(const PosedPoint& p, const PosedPoint& q) const {
+  const Dyadic3 way = exact(q) - exact(p);
+  return {way.x.scaled(-scale_exponent_), way.y.scaled(-scale_exponent_), way.z.scaled(-scale_exponent_)};
+}
+
 int PosedSolids::compare(int k, const PosedPoint& p, const PosedPoint& q) const {
   const double value = p.x[k] - q.x[k];
   if (p.exact && q.exact) return sign_of(value);

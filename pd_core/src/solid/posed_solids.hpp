@@ -70,6 +70,9 @@ class PosedSolids {
   /// Sign of p[k] - q[k].
   [[nodiscard]] int compare(int k, const PosedPoint& p, const PosedPoint& q) const;
 
+  /// The way from p to q times a positive number, which is the same for all points.
+  [[nodiscard]] Dyadic3 exact_way(const PosedPoint& p, const PosedPoint& q) const;
+
   /// Signs that doubles left open.
   [[nodiscard]] std::int64_t exact_signs() const { return exact_signs_; }
 

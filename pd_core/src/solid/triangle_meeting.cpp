@@ -22,6 +22,27 @@ bool has_both_signs(const Signs& s) {
   return least < 0 && most > 0;
 }
 
+int turn_of(const PosedSolids& solids, int axis, const PosedTriangle& t) {
+  return solids.orient2d(axis, t[0], t[1], t[2]);
+}
+
+/// True if an edge of the first triangle has the second one beyond it, in the shadow.
+bool separates(const PosedSolids& solids, int axis, const PosedTriangle& s, const PosedTriangle& t) {
+  const int turn = turn_of(solids, axis, s);
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (std::all_of(t.begin(), t.end(),
+                    [&](const PosedPoint& x) { return turn * solids.orient2d(axis, s[k], s[next(k)], x) <= 0; })) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// True if the shadows of two triangles of one plane have an area in common.
+bool share_shadow(const PosedSolids& solids, int axis, const PosedTriangle& s, const PosedTriangle& t) {
+  return !separates(solids, axis, s, t) && !separates(solids, axis, t, s);
+}
+
 /// A triangle with the signs of its corners about the other's plane.
 struct Side {
   Body body;
@@ -194,21 +215,10 @@ class MeetingTest {
   /// Triangles of one plane: where they have an area in common, both solids lie on one side of it, or on opposite ones.
   bool in_one_plane() {
     const int axis = shadow_axis(solids_, a_.corners);
-    const int turn_a = solids_.orient2d(axis, a_.corners[0], a_.corners[1], a_.corners[2]);
-    const int turn_b = solids_.orient2d(axis, b_.corners[0], b_.corners[1], b_.corners[2]);
-    if (separates(axis, turn_a, a_.corners, b_.corners) || separates(axis, turn_b, b_.corners, a_.corners))
-      return false;
+    const int turn_a = turn_of(solids_, axis, a_.corners), turn_b = turn_of(solids_, axis, b_.corners);
+    if (!share_shadow(solids_, axis, a_.corners, b_.corners)) return false;
     if (turn_a == turn_b) return true;
     meeting_ = Meeting::arc;
-    return false;
-  }
-  [[nodiscard]] bool separates(int axis, int turn, const PosedTriangle& s, const PosedTriangle& t) const {
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (std::all_of(t.begin(), t.end(),
-                      [&](const PosedPoint& x) { return turn * solids_.orient2d(axis, s[k], s[next(k)], x) <= 0; })) {
-        return true;
-      }
-    }
     return false;
   }
 
@@ -284,6 +294,12 @@ class MeetingTest {
 };
 
 }  // namespace
+
+bool share_area(const PosedSolids& solids, const PosedTriangle& s, const PosedTriangle& t) {
+  const bool one_plane =
+      std::all_of(t.begin(), t.end(), [&](const PosedPoint& x) { return solids.orient3d(s, x) == 0; });
+  return one_plane && share_shadow(solids, shadow_axis(solids, s), s, t);
+}
 
 Meeting meeting_of(const PosedSolids& solids, std::int32_t triangle_a, std::int32_t triangle_b) {
   return MeetingTest(solids, triangle_a, triangle_b).run();

@@ -22,6 +22,9 @@ enum class Meeting : std::uint8_t {
   overlap,  ///< the solids have interior points in common near the meeting
 };
 
+/// True if two triangles lie in one plane and have an area in common.
+[[nodiscard]] bool share_area(const PosedSolids& solids, const PosedTriangle& s, const PosedTriangle& t);
+
 [[nodiscard]] Meeting meeting_of(const PosedSolids& solids, std::int32_t triangle_a, std::int32_t triangle_b);
 
 }  // namespace pd::detail

@@ -3,7 +3,7 @@
 ///
 /// The class is exact on the stored numbers and poses. Solids are overlapping when their interiors meet, touching when
 /// they have boundary points alone in common, separated else. A slot of zero width belongs to the forbidden placements
-/// (`compound_depth.hpp`).
+/// (`compound_depth.hpp`): no depth is told by it, and two solids in such a place are touching, in a seat (`is_seat`).
 #pragma once
 
 #include <cstdint>
@@ -49,6 +49,16 @@ struct SolidDepth : PenetrationDepth {
 
 /// The class alone.
 [[nodiscard]] ContactClass classify(const PosedSolid& a, const PosedSolid& b);
+
+/// True if A fits exactly: the solids touch, and the places without an overlap have no volume around A's place. So
+/// every small move but along a plane, a line or a ray makes the two overlap: a peg in a hole of exactly its size, a
+/// cube in a notch of exactly its width. Such a place is no way out of an overlap.
+///
+/// Exact on the stored numbers. Time: that of the class, for each of the sectors into which the contacts cut the
+/// directions; most solids that touch need one, and most that fit need none.
+/// @return limit_exceeded above 4,096 sectors, and where vertices or edges that do not meet are nearer than a millionth
+/// of the size.
+[[nodiscard]] Expected<bool> is_seat(const PosedSolid& a, const PosedSolid& b);
 
 /// Depth of two solids, or their distance when apart.
 ///
