@@ -13,8 +13,6 @@ namespace {
 
 constexpr int kDualSteps = 4;
 
-bool later(const CoverCell& x, const CoverCell& y) { return x.key != y.key ? x.key > y.key : x.order > y.order; }
-
 /// Of the cube's points the distance of the nearest to the origin.
 double distance(const CoverCell& cell) { return (cell.centre.cwiseAbs().array() - cell.half).max(0.0).matrix().norm(); }
 
@@ -90,9 +88,7 @@ void CoverCells::add(CoverCell cell) {
   cell.key = std::max(known_lower_, distance(cell) * (1 - 0x1p-48));
   const double farthest = (cell.centre.cwiseAbs().array() + cell.half).matrix().norm();
   if (cell.key > upper_ || farthest * (1 + 0x1p-48) < known_lower_) return;
-  cell.order = order_++;
-  queue_.push_back(std::move(cell));
-  std::push_heap(queue_.begin(), queue_.end(), later);
+  queue_.push(cell.key, std::move(cell));
 }
 
 bool CoverCells::covered(const CoverCell& cell) {
@@ -153,10 +149,8 @@ void CoverCells::halve(const CoverCell& cell) {
 
 std::optional<CoverCell> CoverCells::next(double upper) {
   upper_ = std::min(upper_, upper);
-  while (!queue_.empty() && queue_.front().key <= upper_ && !differences_.limit_exceeded()) {
-    std::pop_heap(queue_.begin(), queue_.end(), later);
-    CoverCell cell = std::move(queue_.back());
-    queue_.pop_back();
+  while (!queue_.empty() && queue_.least_key() <= upper_ && !differences_.limit_exceeded()) {
+    CoverCell cell = queue_.pop();
     ++num_cells_;
     const bool halved_last = memory_ != nullptr && memory_->halved(cell.known);
     if (halved_last) {

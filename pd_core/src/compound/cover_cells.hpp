@@ -13,6 +13,7 @@
 #include <optional>
 #include <vector>
 
+#include "compound/nearest_first.hpp"
 #include "compound/part_differences.hpp"
 
 namespace pd::detail {
@@ -22,7 +23,6 @@ class UnionMemory;
 /// A cube of translations (inside lengths), and the P_k that may meet it.
 struct CoverCell {
   double key = 0;  ///< no point of the cube is nearer to the origin
-  std::int64_t order = 0;
   int depth = 0;
   std::int32_t known = -1;  ///< the same cube of the last frame's search; -1: there was none
   std::int32_t record = 0;  ///< it in this one's
@@ -86,11 +86,10 @@ class CoverCells {
   PartDifferences& differences_;
   double known_lower_;
   UnionMemory* memory_;
-  double upper_ = HUGE_VAL;       ///< a placement at this distance is free
-  std::vector<CoverCell> queue_;  ///< a heap
+  double upper_ = HUGE_VAL;  ///< a placement at this distance is free
+  NearestFirst<CoverCell> queue_;
   std::vector<std::int32_t> recent_;
   std::vector<std::int32_t> meeting_;
-  std::int64_t order_ = 0;
   std::int64_t num_cells_ = 0;
 };
 

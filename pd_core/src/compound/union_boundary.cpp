@@ -12,7 +12,7 @@ UnionBoundary::UnionBoundary(PartDifferences& differences) : differences_(differ
 
 UnionBoundary::ClippedSet UnionBoundary::own(std::size_t piece) const {
   ClippedSet clipped((differences_.pieces().size() + 63) / 64, 0);
-  clipped[piece / 64] |= std::uint64_t{1} << (piece % 64);
+  mark(clipped, piece);
   return clipped;
 }
 
@@ -89,21 +89,12 @@ std::ptrdiff_t UnionBoundary::covering(const Vec3& x, const ClippedSet& clipped,
 }
 
 bool UnionBoundary::contained_in_recent(const PlanePolygon& polygon) {
-  const double slack = 2 * polygon.error + 0x1p-44 * differences_.extent();
-  for (std::size_t i = 0; i < recent_.size(); ++i) {
-    const auto& planes = differences_.pieces()[recent_[i]].planes;
-    const bool inside = std::all_of(planes.begin(), planes.end(), [&](const RoughPlane& plane) {
-      const double limit = plane.offset - plane.slack - slack;
-      return std::all_of(polygon.corners.begin(), polygon.corners.end(),
-                         [&](const Vec3& x) { return plane.normal.dot(x) < limit; });
-    });
-    if (inside) {
-      std::rotate(recent_.begin(), recent_.begin() + static_cast<std::ptrdiff_t>(i),
-                  recent_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
-      return true;
-    }
-  }
-  return false;
+  const double rounding = 2 * polygon.error + 0x1p-44 * differences_.extent();
+  const auto found = std::find_if(recent_.begin(), recent_.end(),
+                                  [&](std::size_t k) { return surely_holds(k, polygon.corners, rounding); });
+  if (found == recent_.end()) return false;
+  std::rotate(recent_.begin(), found, found + 1);
+  return true;
 }
 
 void UnionBoundary::rough_corners(std::size_t k, std::size_t f, std::vector<Vec3>& corners) const {
@@ -117,8 +108,7 @@ void UnionBoundary::rough_corners(std::size_t k, std::size_t f, std::vector<Vec3
   }
 }
 
-bool UnionBoundary::surely_holds(std::size_t k, const std::vector<Vec3>& points) {
-  const double rounding = 0x1p-42 * differences_.extent();
+bool UnionBoundary::surely_holds(std::size_t k, const std::vector<Vec3>& points, double rounding) {
   const PartDifference& piece = differences_.roughly(k);
   return !piece.flat && std::all_of(piece.planes.begin(), piece.planes.end(), [&](const RoughPlane& plane) {
     const double limit = plane.offset - plane.slack - rounding;

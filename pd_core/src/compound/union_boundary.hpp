@@ -9,7 +9,7 @@
 /// first is asked which P_k hold its nearest point; one of them is subtracted, exactly, and what is left goes back in
 /// the queue. A polygon whose nearest point no P_k holds ends the search. Each cut takes one P_k off a polygon's list
 /// for good, so that every search ends. The nearest point is sought cube by cube (`CoverCells`), among the P_k that
-/// meet the cube.
+/// meet the cube. A search in doubles closes slots that are narrower than a slack (`nearest_past_seams`).
 #pragma once
 
 #include <cstdint>
@@ -49,6 +49,22 @@ class UnionBoundary {
   };
   /// @param memory       nullptr, or the last frame's.
   [[nodiscard]] std::optional<Nearest> nearest(double known_lower, double reach, UnionMemory* memory);
+
+  /// The nearest boundary point in doubles if slots and seams narrower than `slack` are closed: a P_k covers a point of
+  /// a facet if it holds, up to the slack, the point two slacks farther out.
+  struct PastSeams {
+    std::size_t piece = 0;
+    Vec3 x = Vec3::Zero();
+  };
+  /// Bounds of the origin's signed distance from a P_k, negative inside.
+  struct SignedDistance {
+    double least = 0;
+    double most = 0;
+  };
+  using Measure = std::function<SignedDistance(std::size_t k)>;
+  /// Makes a P_k when the search has come as far as the origin is deep in it, or apart from it.
+  /// @return nothing if there is no P_k, or if the limit of facets was exceeded
+  [[nodiscard]] std::optional<PastSeams> nearest_past_seams(double slack, const Measure& measure);
 
   /// Whether a point (inside lengths, as stored) lies on the boundary, exactly. `held` tells whether a closed P_k holds
   /// it: held and not on the boundary is inside.
@@ -90,6 +106,7 @@ class UnionBoundary {
 
  private:
   class NearestSearch;
+  class SeamSearch;
   using ClippedSet = std::vector<std::uint64_t>;  ///< a bit for each P_k that was subtracted (or is the polygon's own)
   struct Cell {
     BoundaryPoint where;
@@ -97,6 +114,7 @@ class UnionBoundary {
   };
 
   [[nodiscard]] ClippedSet own(std::size_t piece) const;
+  static void mark(ClippedSet& clipped, std::size_t k) { clipped[k / 64] |= std::uint64_t{1} << (k % 64); }
   static bool has(const ClippedSet& clipped, std::size_t k) { return (clipped[k / 64] >> (k % 64) & 1) != 0; }
 
   /// Cuts P_k off a polygon of P_own. False when it covers none of it; else `rest_` holds what is left.
@@ -118,8 +136,9 @@ class UnionBoundary {
   bool split_one(OpenCell& cell, std::vector<OpenCell>& open);
   /// Sets `corners` to those of a facet in doubles (inside lengths). Requires P_k to be made roughly.
   void rough_corners(std::size_t k, std::size_t f, std::vector<Vec3>& corners) const;
-  /// True if P_k holds all of these points in its interior, for certain. They may be rough corners or lie between such.
-  [[nodiscard]] bool surely_holds(std::size_t k, const std::vector<Vec3>& points);
+  /// True if P_k holds all of these points in its interior, for certain.
+  /// @param rounding  bounds how wrong a height of these points is
+  [[nodiscard]] bool surely_holds(std::size_t k, const std::vector<Vec3>& points, double rounding);
   /// Whether a P_k that covered something recently contains all of a polygon in its interior, for certain.
   bool contained_in_recent(const PlanePolygon& polygon);
   /// Puts a P_k that covered something in front of those asked first.

@@ -109,7 +109,7 @@ bool UnionBoundary::split_one(OpenCell& open_cell, std::vector<OpenCell>& open) 
   Cell& cell = open_cell.cell;
   const PlanePolygon& polygon = cell.where.polygon;
   const auto split_by = [&](std::size_t k) {
-    cell.clipped[k / 64] |= std::uint64_t{1} << (k % 64);
+    mark(cell.clipped, k);
     std::erase(open_cell.near, static_cast<std::int32_t>(k));
     if (!subtract(polygon, cell.where.piece, k, true)) return false;
     for (PlanePolygon& part : rest_) {

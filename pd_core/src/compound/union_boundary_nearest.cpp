@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "compound/cover_cells.hpp"
+#include "compound/nearest_first.hpp"
 #include "compound/union_boundary.hpp"
 #include "numeric/quotient.hpp"
 #include "numeric/root_sum.hpp"
@@ -38,14 +39,15 @@ class UnionBoundary::NearestSearch {
     while (const auto cell = cells.next(best_key_)) {
       enter(*cell);
       while (!queue_.empty()) {
-        Waiting top = pop();
-        if (top.key >= best_key_) break;
-        if (top.cell.where.polygon.corners.empty()) {
-          make(std::move(top.cell), *cell);
+        const double key = queue_.least_key();
+        if (key >= best_key_) break;
+        Cell top = queue_.pop();
+        if (top.where.polygon.corners.empty()) {
+          make(std::move(top), *cell);
           continue;
         }
         ++boundary_.counts_.polygons;
-        if (!boundary_.contained_in_recent(top.cell.where.polygon)) visit(std::move(top));
+        if (!boundary_.contained_in_recent(top.where.polygon)) visit(key, std::move(top));
       }
     }
     boundary_.counts_.cells += cells.num_cells();
@@ -55,24 +57,6 @@ class UnionBoundary::NearestSearch {
   }
 
  private:
-  struct Waiting {
-    double key;  ///< no point of the polygon is nearer
-    std::int64_t order;
-    Cell cell;
-  };
-  static bool later(const Waiting& x, const Waiting& y) { return x.key != y.key ? x.key > y.key : x.order > y.order; }
-
-  void push(Waiting waiting) {
-    queue_.push_back(std::move(waiting));
-    std::push_heap(queue_.begin(), queue_.end(), later);
-  }
-  Waiting pop() {
-    std::pop_heap(queue_.begin(), queue_.end(), later);
-    Waiting top = std::move(queue_.back());
-    queue_.pop_back();
-    return top;
-  }
-
   /// Lets the facets' parts in the closed cube wait, unmade. A boundary point of the union lies in the part of a facet
   /// of one of the cubes that hold it, and any P_k that covers it meets that cube.
   void enter(const CoverCell& cell) {
@@ -92,7 +76,7 @@ class UnionBoundary::NearestSearch {
         // Of most that do, near the answer, nothing there is nearer than the best point so far.
         const double key = distance_within(piece.planes[f], cell, scale_);
         if (key >= best_key_ || !clip_roughly(k, f, cell) || covered_roughly(k)) continue;
-        push({std::max(known_lower_, key), order_++, {{k, f, {}, Vec3::Zero()}, {}}});
+        queue_.push(std::max(known_lower_, key), {{k, f, {}, Vec3::Zero()}, {}});
       }
     }
   }
@@ -156,8 +140,9 @@ class UnionBoundary::NearestSearch {
 
   /// True if another P_k holds the part of a facet in `part_` in its interior, for certain.
   bool covered_roughly(std::size_t own) {
+    const double rounding = 0x1p-42 * scale_;
     const auto found = std::find_if(among_.begin(), among_.end(), [&](std::int32_t k) {
-      return static_cast<std::size_t>(k) != own && boundary_.surely_holds(static_cast<std::size_t>(k), part_);
+      return static_cast<std::size_t>(k) != own && boundary_.surely_holds(static_cast<std::size_t>(k), part_, rounding);
     });
     if (found == among_.end()) return false;
     // What covers one facet covers its neighbours.
@@ -175,11 +160,11 @@ class UnionBoundary::NearestSearch {
     const double distance = cell.where.x.norm();
     const double key = std::max(known_lower_, distance - 4 * polygon.error - 0x1p-50 * scale_);
     if (key >= best_key_ || boundary_.contained_in_recent(polygon)) return;
-    push({key, order_++, std::move(cell)});
+    queue_.push(key, std::move(cell));
   }
 
-  void visit(Waiting top) {
-    Cell& cell = top.cell;
+  /// @param key  no point of the polygon is nearer
+  void visit(double key, Cell cell) {
     // Ties are decided exactly, so that the lower bound is the depth itself.
     std::optional<ExactNearestPoint> exact;
     if (best_) {
@@ -189,7 +174,7 @@ class UnionBoundary::NearestSearch {
     const double tolerance = 8 * cell.where.polygon.error + 0x1p-44 * scale_;
     const std::ptrdiff_t k = boundary_.covering(cell.where.x, cell.clipped, tolerance, among_);
     if (k >= 0) {
-      subtract(std::move(top), static_cast<std::size_t>(k));
+      subtract(key, std::move(cell), static_cast<std::size_t>(k));
       return;
     }
     if (!exact) exact = exact_nearest_point(boundary_.planes_, cell.where.polygon);
@@ -197,20 +182,18 @@ class UnionBoundary::NearestSearch {
     if ((x - cell.where.x).cwiseAbs().maxCoeff() > tolerance / 4) {
       // A flat crossing misled the doubles: asked again at the right point.
       cell.where.x = x;
-      top.key = std::max(top.key, x.norm() * (1 - 0x1p-48));
-      push(std::move(top));
+      queue_.push(std::max(key, x.norm() * (1 - 0x1p-48)), std::move(cell));
       return;
     }
     accept(std::move(cell), *exact, x);
   }
 
   /// Puts back what P_k leaves of the polygon.
-  void subtract(Waiting top, std::size_t k) {
-    Cell& cell = top.cell;
+  void subtract(double key, Cell cell, std::size_t k) {
     boundary_.mark_recent(k);
-    cell.clipped[k / 64] |= std::uint64_t{1} << (k % 64);
+    mark(cell.clipped, k);
     if (!boundary_.subtract(cell.where.polygon, cell.where.piece, k, false)) {
-      push(std::move(top));
+      queue_.push(key, std::move(cell));
       return;
     }
     std::vector<PlanePolygon> rest = std::move(boundary_.rest_);
@@ -234,11 +217,10 @@ class UnionBoundary::NearestSearch {
   UnionBoundary& boundary_;
   const double known_lower_;
   const double scale_;
-  std::vector<Waiting> queue_;       ///< a heap
+  NearestFirst<Cell> queue_;         ///< no point of an item's polygon is nearer than its key
   std::vector<std::int32_t> among_;  ///< the P_k that meet the cube
   std::vector<Side> walls_;          ///< of the cube, once a facet is cut
   std::vector<Vec3> part_, clipped_;
-  std::int64_t order_ = 0;
   std::optional<Nearest> best_;
   SquaredRatio best_squared_;
   double best_key_ = HUGE_VAL;  ///< distance of the best point, at most this

@@ -134,7 +134,7 @@ std::optional<UnionBoundary::Hit> UnionBoundary::along(const Vec3& direction, co
     bool again = false;
     for (std::size_t k = 0; k < boxes_.size() && !again; ++k) {
       if (has(top.cell.clipped, k) || !holds(k, top.t, x)) continue;
-      top.cell.clipped[k / 64] |= std::uint64_t{1} << (k % 64);
+      mark(top.cell.clipped, k);
       if (!subtract(top.cell.where.polygon, top.cell.where.piece, k, false)) continue;
       again = true;
       std::vector<PlanePolygon> rest = std::move(rest_);
