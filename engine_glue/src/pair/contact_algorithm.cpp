@@ -20,7 +20,7 @@
 #include "pd/bullet/scalar.hpp"
 #include "pieces/piece_wrapper.hpp"
 #include "shapes/cached_shape.hpp"
-#include "shapes/moving_body.hpp"
+#include "shapes/compound_children.hpp"
 #include "shapes/prefetch.hpp"
 
 namespace pd::detail {
@@ -32,24 +32,6 @@ constexpr std::size_t kWarmBytesAtRest = 128;
 
 const btConvexShape& convex_shape(const btCollisionObjectWrapper* wrapper) {
   return *static_cast<const btConvexShape*>(wrapper->getCollisionShape());
-}
-
-/// Whether the bounding boxes are further apart than contacts reach. Bullet's broadphase widens boxes by 2 cm whatever
-/// the bodies' size, so that most pairs of small bodies end here.
-bool boxes_apart(const btConvexShape& a, const btTransform& pose_a, const btConvexShape& b, const btTransform& pose_b,
-                 btScalar reach) {
-  btVector3 lower_a;
-  btVector3 upper_a;
-  btVector3 lower_b;
-  btVector3 upper_b;
-  a.getAabb(pose_a, lower_a, upper_a);
-  b.getAabb(pose_b, lower_b, upper_b);
-  for (int i = 0; i < 3; ++i) {
-    if (lower_a[i] > upper_b[i] + reach || lower_b[i] > upper_a[i] + reach) {
-      return true;
-    }
-  }
-  return false;
 }
 
 /// How far apart two surfaces may be for a contact, as in Bullet's own algorithms: the breaking threshold and what a
@@ -105,7 +87,8 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
     if (flies_on(in_flight, info, *result)) return;
     memory->flight.forget();
   }
-  if (!touched && boxes_apart(shape_a, pose_a, shape_b, pose_b, threshold)) {
+  // Bullet's broadphase widens boxes by 2 cm whatever the bodies' size, so that most pairs of small bodies end here.
+  if (!touched && apart(box_of(shape_a, pose_a), box_of(shape_b, pose_b), threshold)) {
     manifold_.clear();
     return;
   }
@@ -216,24 +199,6 @@ void ContactAlgorithm::process_by_bullet(btConvexPenetrationDepthSolver& solver,
     detector.getClosestPoints(input, result, info.m_debugDraw);
   }
   manifold_.refresh(result);
-}
-
-btScalar ContactAlgorithm::calculateTimeOfImpact(btCollisionObject* a, btCollisionObject* b, const btDispatcherInfo&,
-                                                 btManifoldResult*) {
-  SolverCore& core = world_.core();
-  if (core.closed() || !a->getCollisionShape()->isConvex() || !b->getCollisionShape()->isConvex()) {
-    return btScalar(1);
-  }
-  const auto shape_a = core.cache.find_or_convert(*static_cast<btConvexShape*>(a->getCollisionShape()));
-  const auto shape_b = core.cache.find_or_convert(*static_cast<btConvexShape*>(b->getCollisionShape()));
-  if (!shape_a || !shape_b) {
-    return btScalar(1);
-  }
-  auto buffers = core.buffers.lease();
-  const auto impact = time_of_impact(
-      moving_shape(*shape_a, a->getWorldTransform(), a->getInterpolationWorldTransform(), 1),
-      moving_shape(*shape_b, b->getWorldTransform(), b->getInterpolationWorldTransform(), 1), 1, buffers->scratch);
-  return impact.hit ? static_cast<btScalar>(impact.time) : btScalar(1);
 }
 
 }  // namespace pd::detail

@@ -24,10 +24,6 @@ class ContactAlgorithm final : public AlgorithmShell {
 
   void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
                         const btDispatcherInfo& info, btManifoldResult* result) override;
-  /// Exact first contact of the motion from each body's present to its interpolation transform, as a fraction of it;
-  /// 1 without contact. (No world of Bullet 3 calls it.)
-  btScalar calculateTimeOfImpact(btCollisionObject* a, btCollisionObject* b, const btDispatcherInfo& info,
-                                 btManifoldResult* result) override;
   void getAllContactManifolds(btManifoldArray& manifolds) override;
   /// True if boxes that are children of compounds are taken without their margin.
   [[nodiscard]] bool sharp_parts() const;

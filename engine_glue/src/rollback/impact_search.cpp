@@ -36,11 +36,6 @@ constexpr int kHalvings = 8;
 
 }  // namespace
 
-const ConvexShape& Piece::shape_beside(const Piece& other) const {
-  if (triangle) return *triangle;
-  return cached->sharp && other.cached && other.cached->sharp ? *cached->sharp : *cached->body;
-}
-
 Pose Piece::with_body_at(const btTransform& pose) const { return to_pd(pose * local); }
 
 void ImpactSearch::begin_frame() {
@@ -218,8 +213,8 @@ void ImpactSearch::search_bodies(const Body& a, const Body& b, const Settings& s
 
 void ImpactSearch::search_convex(const Body& a, const Piece& pa, const Body& b, const Piece& pb,
                                  const Settings& settings, FoundImpact& found) {
-  const MovingShape moving_a = moving_piece(pa.shape_beside(pb), a.start, pa.local, a.motion);
-  const MovingShape moving_b = moving_piece(pb.shape_beside(pa), b.start, pb.local, b.motion);
+  const MovingShape moving_a = moving_piece(pa.cached->beside(*pb.cached), a.start, pa.local, a.motion);
+  const MovingShape moving_b = moving_piece(pb.cached->beside(*pa.cached), b.start, pb.local, b.motion);
   const auto travel = [&](const Body& body, const Piece& piece, const MovingShape& moving) {
     return body.motion.angular_velocity.norm() * duration_ * (moving.arm.norm() + piece.radius);
   };
@@ -304,7 +299,7 @@ void ImpactSearch::swept_box(const Body& a, const Piece& pa, const Body& b, cons
   upper += btVector3(grown, grown, grown);
 }
 
-Level ImpactSearch::level_of(const StillTriangle& triangle, const Vec3& towards) {
+SupportLevel ImpactSearch::level_of(const StillTriangle& triangle, const Vec3& towards) {
   const std::array<Vec3, 3>& corners = triangle.corners;
   Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
   const double length = normal.norm();
@@ -345,7 +340,7 @@ void ImpactSearch::read_surface(const Approach& pair, StaysApart& along, Surroun
     StillTriangle world{local.corners, margin};
     for (Vec3& corner : world.corners) corner = surface.apply(corner);
     Surface triangle{local, level_of(world, start.translation()), world, 0, HUGE_VAL, nullptr, std::nullopt};
-    const Level& level = triangle.level;
+    const SupportLevel& level = triangle.level;
     triangle.bound = std::max(along.at_start(level), along.beside_at_start(world));
     if (triangle.bound <= pair.depth.beyond) {
       // A point of the body is no nearer than the body: the first one, or the one on the way through it that is in the
@@ -366,24 +361,24 @@ void ImpactSearch::read_surface(const Approach& pair, StaysApart& along, Surroun
                    [](const Surface& x, const Surface& y) { return x.reach < y.reach; });
 }
 
-std::shared_ptr<const ConvexShape> ImpactSearch::shape_of(const TriangleCorners& corners, double margin) {
+std::shared_ptr<CachedShape> ImpactSearch::shape_of(const TriangleCorners& corners, double margin) {
   btTriangleShape triangle(to_bullet(corners.corners[0]), to_bullet(corners.corners[1]), to_bullet(corners.corners[2]));
   triangle.setMargin(static_cast<btScalar>(margin));
   std::shared_ptr<CachedShape> found;
   triangles_.find(triangle, found, [&](const btTriangleShape& made) { return solver_.cache().find(made, 0); });
-  return found->body;
+  return found;
 }
 
 double ImpactSearch::ask_start(const Approach& pair, Surface& triangle) {
   if (!triangle.start) {
     triangle.start.emplace();
     triangle.shape = shape_of(triangle.corners, triangle.world.margin);
-    if (triangle.shape != nullptr) {
-      const MovingShape posed = moving_piece(*triangle.shape, pair.b.start, pair.concave.local, pair.b.motion);
+    if (triangle.shape->body) {
+      const MovingShape posed = moving_piece(*triangle.shape->body, pair.b.start, pair.concave.local, pair.b.motion);
       *triangle.start = penetration_depth(pair.moving.start, posed.start, scratch_, pair.depth);
     }
   }
-  return triangle.shape != nullptr ? triangle.start->signed_distance() : HUGE_VAL;
+  return triangle.shape->body ? triangle.start->signed_distance() : HUGE_VAL;
 }
 
 bool ImpactSearch::is_in_contact(const Approach& pair, std::vector<Surface>& surface, double in_contact) {
@@ -438,20 +433,21 @@ void ImpactSearch::search_concave(const Body& a, const Piece& pa, const Body& b,
     Surface& triangle = surface[i];
     if (impact.allowed_depth > 0 && proved(triangle, -0.9 * impact.allowed_depth)) continue;
     if (ask_start(pair, triangle) > way + settings.gap) continue;
-    const MovingShape moving_b = moving_piece(*triangle.shape, b.start, pb.local, b.motion);
+    const MovingShape moving_b = moving_piece(*triangle.shape->body, b.start, pb.local, b.motion);
     impact.at_start = &*triangle.start;
     const TimeOfImpact hit = time_of_impact(moving_a, moving_b, std::min(duration_, found.time), scratch_, impact);
     if (hit.hit && hit.time < found.time) {
       found = {pa, pb, hit.time, impact.allowed_depth};
-      found.b.triangle = triangle.shape;
+      found.b.cached = triangle.shape;
       if (impact.allowed_depth > 0) end_where_it_came_in(moving_a, moving_b, depth, settings, found);
     }
   }
 }
 
 PenetrationDepth ImpactSearch::measure(const FoundImpact& impact, const btTransform& a, const btTransform& b) {
-  return penetration_depth({&impact.a.shape_beside(impact.b), impact.a.with_body_at(a)},
-                           {&impact.b.shape_beside(impact.a), impact.b.with_body_at(b)}, scratch_, quick_);
+  const CachedShape &of_a = *impact.a.cached, &of_b = *impact.b.cached;
+  return penetration_depth({&of_a.beside(of_b), impact.a.with_body_at(a)},
+                           {&of_b.beside(of_a), impact.b.with_body_at(b)}, scratch_, quick_);
 }
 
 btTransform ImpactSearch::pose_on_the_way(const btCollisionObject& object, double time) const {

@@ -12,9 +12,8 @@
 #include <vector>
 
 #include "pd/bullet/penetration_depth_solver.hpp"
-#include "pd/contact/time_of_impact.hpp"
+#include "pd/contact/stays_apart.hpp"
 #include "pd/depth/scratch.hpp"
-#include "rollback/stays_apart.hpp"
 #include "shapes/cached_shape.hpp"
 #include "shapes/triangle_cache.hpp"
 #include "shapes/triangles_in_box.hpp"
@@ -25,13 +24,10 @@ namespace pd::detail {
 struct Piece {
   btCollisionObject* body = nullptr;
   btTransform local = btTransform::getIdentity();  ///< in the body
-  std::shared_ptr<CachedShape> cached;
+  std::shared_ptr<CachedShape> cached;             ///< of a concave child: the triangle that was met
   const btConcaveShape* concave = nullptr;
-  std::shared_ptr<const ConvexShape> triangle;  ///< of a concave child: the one that was met
-  double radius = 0;                            ///< of a convex piece, about its own origin
+  double radius = 0;  ///< of a convex piece, about its own origin
 
-  /// As the contact algorithm takes it: two boxes are sharp.
-  [[nodiscard]] const ConvexShape& shape_beside(const Piece& other) const;
   [[nodiscard]] Pose present() const { return with_body_at(body->getWorldTransform()); }
   [[nodiscard]] Pose with_body_at(const btTransform& pose) const;
 };
@@ -105,16 +101,16 @@ class ImpactSearch {
                             FoundImpact& found);
   void search_concave(const Body& a, const Piece& pa, const Body& b, const Piece& pb, const Settings& settings,
                       FoundImpact& found);
-  [[nodiscard]] static Level level_of(const StillTriangle& triangle, const Vec3& towards);
+  [[nodiscard]] static SupportLevel level_of(const StillTriangle& triangle, const Vec3& towards);
   /// A triangle that a body may come to.
   struct Surface {
     TriangleCorners corners;  ///< in the concave piece's frame
-    Level level;              ///< along its normal, towards the body
+    SupportLevel level;       ///< along its normal, towards the body
     StillTriangle world;
-    double bound;                              ///< no larger than the signed distance where the motion begins
-    double reach;                              ///< no smaller than the signed distance there
-    std::shared_ptr<const ConvexShape> shape;  ///< null: not asked for yet, or a corner is not finite
-    std::optional<PenetrationDepth> start;     ///< the answer where the motion begins; empty: not asked for yet
+    double bound;                           ///< no larger than the signed distance where the motion begins
+    double reach;                           ///< no smaller than the signed distance there
+    std::shared_ptr<CachedShape> shape;     ///< null: not asked for yet; without a body: a corner is not finite
+    std::optional<PenetrationDepth> start;  ///< the answer where the motion begins; empty: not asked for yet
   };
   /// A convex piece that moves against the triangles of a concave one.
   struct Approach {
@@ -135,8 +131,8 @@ class ImpactSearch {
   /// Returns those of a pair, and more: a shorter trial takes what a longer one read.
   std::vector<Surface>& surface_of(const Approach& pair, StaysApart& along);
   void read_surface(const Approach& pair, StaysApart& along, Surroundings& around);
-  /// Returns the convex body of a triangle; null if a corner is not finite.
-  [[nodiscard]] std::shared_ptr<const ConvexShape> shape_of(const TriangleCorners& triangle, double margin);
+  /// Returns what a triangle is converted to.
+  [[nodiscard]] std::shared_ptr<CachedShape> shape_of(const TriangleCorners& triangle, double margin);
   /// Returns the signed distance of the convex piece and a triangle where the motion begins; HUGE_VAL if a corner is
   /// not finite. Asks the core once.
   double ask_start(const Approach& pair, Surface& triangle);

@@ -2,7 +2,7 @@
 /// An entry of the shape cache: what a Bullet shape was converted to, and when it was last compared.
 #pragma once
 
-#include <BulletCollision/CollisionShapes/btCollisionShape.h>
+#include <BulletCollision/CollisionShapes/btConvexShape.h>
 
 #include <array>
 #include <atomic>
@@ -28,6 +28,14 @@ struct CachedShape {
   Error refusal{ErrorCode::unsupported, {}, {}};
   std::atomic<bool> used{false};           ///< found since the cache last looked for entries to drop
   std::atomic<std::uint64_t> compared{0};  ///< the stamp under which all points were last compared
+
+  /// As Bullet's contacts take a body beside another one: two boxes are sharp. Requires a body.
+  [[nodiscard]] const ConvexShape& beside(const CachedShape& other) const {
+    return sharp && other.sharp ? *sharp : *body;
+  }
 };
+
+/// What a shape is converted to without a cache.
+[[nodiscard]] std::shared_ptr<CachedShape> converted(const btConvexShape& shape);
 
 }  // namespace pd::detail

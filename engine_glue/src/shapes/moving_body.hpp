@@ -38,12 +38,6 @@ inline Vec3 linear_velocity(const btCollisionObject& object) {
   return body == nullptr ? Vec3(Vec3::Zero()) : to_pd(body->getLinearVelocity());
 }
 
-/// A body that turns about its own origin.
-inline MovingShape moving_shape(const ConvexShape& shape, const btTransform& from, const btTransform& to,
-                                double duration) {
-  return {{&shape, to_pd(from)}, motion_between(from, to, duration)};
-}
-
 /// A piece of a body that turns about the body's origin. `local`: of the piece in the body.
 inline MovingShape moving_piece(const ConvexShape& shape, const btTransform& body_start, const btTransform& local,
                                 const RigidMotion& motion) {

@@ -15,7 +15,9 @@ namespace {
 /// so that two looks for each new entry would do to keep a table from growing whose entries are used once.
 constexpr int kLooks = 4;
 
-std::shared_ptr<detail::CachedShape> convert(const btConvexShape& shape) {
+}  // namespace
+
+std::shared_ptr<detail::CachedShape> detail::converted(const btConvexShape& shape) {
   auto result = std::make_shared<detail::CachedShape>();
   result->source = &shape;
   auto body = to_convex_shape(shape);
@@ -31,8 +33,6 @@ std::shared_ptr<detail::CachedShape> convert(const btConvexShape& shape) {
   return result;
 }
 
-}  // namespace
-
 BulletShapeCache::BulletShapeCache(std::size_t capacity) : capacity_(std::max<std::size_t>(capacity, 1)) {}
 
 std::shared_ptr<const ConvexShape> BulletShapeCache::find_or_convert(const btConvexShape& shape) {
@@ -42,7 +42,7 @@ std::shared_ptr<const ConvexShape> BulletShapeCache::find_or_convert(const btCon
 std::shared_ptr<detail::CachedShape> BulletShapeCache::find(const btConvexShape& shape, std::uint64_t stamp) {
   if (shape.getShapeType() == TRIANGLE_SHAPE_PROXYTYPE) {
     conversions_.fetch_add(1, std::memory_order_relaxed);
-    return convert(shape);
+    return detail::converted(shape);
   }
   const std::uint64_t signature = shape_signature(shape);
   std::shared_ptr<detail::CachedShape> known;
@@ -99,7 +99,7 @@ std::shared_ptr<detail::CachedShape> BulletShapeCache::make_entry(const btConvex
   } else {
     // Outside the lock: readers of other shapes go on. Two threads may convert the same shape; both get equal bodies.
     conversions_.fetch_add(1, std::memory_order_relaxed);
-    entry = convert(shape);
+    entry = detail::converted(shape);
   }
   entry->fingerprint = fingerprint;
   return entry;

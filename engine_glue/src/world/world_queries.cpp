@@ -1,6 +1,5 @@
 #include "pd/bullet/world_queries.hpp"
 
-#include <BulletCollision/CollisionShapes/btBoxShape.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 
 #include <algorithm>
@@ -11,10 +10,11 @@
 #include <vector>
 
 #include "pd/bullet/scalar.hpp"
-#include "pd/bullet/shape_conversion.hpp"
+#include "pd/bullet/shape_cache.hpp"
 #include "pd/contact/time_of_impact.hpp"
 #include "pd/depth/scratch.hpp"
 #include "shapes/cached_shape.hpp"
+#include "shapes/compound_children.hpp"
 #include "shapes/moving_body.hpp"
 #include "shapes/triangles_in_box.hpp"
 
@@ -22,28 +22,12 @@ namespace pd {
 
 namespace {
 
-/// A convex shape as Bullet's contacts take it: two boxes are sharp.
-struct Body {
-  std::shared_ptr<const ConvexShape> rounded;
-  std::shared_ptr<const ConvexShape> sharp;
-
-  [[nodiscard]] const ConvexShape& beside(const Body& other) const { return sharp && other.sharp ? *sharp : *rounded; }
-};
+using Body = std::shared_ptr<const detail::CachedShape>;
+using Box = detail::ChildBox;
 
 Expected<Body> convert(const btConvexShape& shape, BulletShapeCache* cache) {
-  if (cache != nullptr) {
-    const auto cached = cache->find(shape, 0);
-    if (!cached->body) return cached->refusal;
-    return Body{cached->body, cached->sharp};
-  }
-  auto rounded = to_convex_shape(shape);
-  if (!rounded) return rounded.error();
-  Body body{std::make_shared<const ConvexShape>(std::move(rounded).value()), nullptr};
-  if (shape.getShapeType() == BOX_SHAPE_PROXYTYPE) {
-    if (auto sharp = to_sharp_box(static_cast<const btBoxShape&>(shape))) {
-      body.sharp = std::make_shared<const ConvexShape>(std::move(sharp).value());
-    }
-  }
+  Body body = cache != nullptr ? cache->find(shape, 0) : detail::converted(shape);
+  if (!body->body) return body->refusal;
   return body;
 }
 
@@ -58,16 +42,10 @@ struct Piece {
 /// The pieces of an object that a box of the world meets. @return false where one has no exact body.
 class Pieces {
  public:
-  Pieces(const btVector3& lower, const btVector3& upper, BulletShapeCache* cache)
-      : lower_(lower), upper_(upper), cache_(cache) {}
+  Pieces(const Box& box, BulletShapeCache* cache) : box_(box), cache_(cache) {}
 
   bool add(const btCollisionShape& shape, const btTransform& pose, int part, int index, bool outermost) {
-    btVector3 low;
-    btVector3 high;
-    shape.getAabb(pose, low, high);
-    for (int axis = 0; axis < 3; ++axis) {
-      if (low[axis] > upper_[axis] || high[axis] < lower_[axis]) return true;
-    }
+    if (detail::apart(detail::box_of(shape, pose), box_, 0)) return true;
     if (shape.isCompound()) {
       const auto& compound = static_cast<const btCompoundShape&>(shape);
       bool all = true;
@@ -93,16 +71,17 @@ class Pieces {
  private:
   void add_triangles(const btConcaveShape& shape, const btTransform& pose) {
     // The box of the box in the shape's frame.
-    const btVector3 middle = pose.invXform(btScalar(0.5) * (lower_ + upper_));
+    const btVector3 middle = pose.invXform(btScalar(0.5) * (box_.lower + box_.upper));
     const btMatrix3x3 turn = pose.getBasis().transpose().absolute();
-    const btVector3 half = turn * (btScalar(0.5) * (upper_ - lower_));
+    const btVector3 half = turn * (btScalar(0.5) * (box_.upper - box_.lower));
     for (detail::BoxedTriangle& triangle : detail::triangles_in_box(shape, middle - half, middle + half)) {
-      pieces.push_back({{std::move(triangle.shape), nullptr}, pose, triangle.part, triangle.index});
+      auto body = std::make_shared<detail::CachedShape>();
+      body->body = std::move(triangle.shape);
+      pieces.push_back({std::move(body), pose, triangle.part, triangle.index});
     }
   }
 
-  btVector3 lower_;
-  btVector3 upper_;
+  const Box& box_;
   BulletShapeCache* cache_;
 };
 
@@ -134,20 +113,12 @@ bool passes(const btBroadphaseProxy& proxy, const WorldQuerySettings& settings) 
          (settings.filter_group & proxy.m_collisionFilterMask) != 0;
 }
 
-struct Box {
-  btVector3 lower;
-  btVector3 upper;
-};
-
 /// A box around the shape at both ends of its way, wider by `margin`; boxes of floats are rounded.
 Box box_around(const btConvexShape& shape, const btTransform& from, const btTransform& to, double margin) {
-  Box box;
-  btVector3 low;
-  btVector3 high;
-  shape.getAabb(from, box.lower, box.upper);
-  shape.getAabb(to, low, high);
-  box.lower.setMin(low);
-  box.upper.setMax(high);
+  Box box = detail::box_of(shape, from);
+  const Box end = detail::box_of(shape, to);
+  box.lower.setMin(end.lower);
+  box.upper.setMax(end.upper);
   const auto grown = static_cast<btScalar>(margin * 1.001);
   box.lower -= btVector3(grown, grown, grown);
   box.upper += btVector3(grown, grown, grown);
@@ -166,7 +137,7 @@ class Cast {
 
   /// How far a point leaves the chord between its ends at most: a turning one by r (1 - cos(turn / 2)).
   [[nodiscard]] double bulge() const {
-    const double radius = bounding_radius(body_.sharp ? *body_.sharp : *body_.rounded);
+    const double radius = bounding_radius(body_->sharp ? *body_->sharp : *body_->body);
     return radius * (1 - std::cos(0.5 * motion_.angular_velocity.norm()));
   }
 
@@ -174,8 +145,8 @@ class Cast {
   std::optional<SweepHit> first_hit(const btCollisionObject& object, const std::vector<Piece>& pieces, double limit) {
     std::optional<SweepHit> best;
     for (const Piece& piece : pieces) {
-      const TimeOfImpact found = time_of_impact({{&body_.beside(piece.body), from_}, motion_},
-                                                {{&piece.body.beside(body_), to_pd(piece.pose)}, {}},
+      const TimeOfImpact found = time_of_impact({{&body_->beside(*piece.body), from_}, motion_},
+                                                {{&piece.body->beside(*body_), to_pd(piece.pose)}, {}},
                                                 best ? best->fraction : limit, scratch_, settings_);
       if (!found.hit || !(found.time < (best ? best->fraction : limit))) continue;
       best.emplace();
@@ -215,7 +186,7 @@ Expected<int> ask(const Sweep& sweep, const Needs& needs, const Limit& limit, co
   const std::function<void(btBroadphaseProxy&)> visit = [&](btBroadphaseProxy& proxy) {
     const auto& object = *static_cast<const btCollisionObject*>(proxy.m_clientObject);
     if (!needs(proxy)) return;
-    Pieces found(box.lower, box.upper, sweep.settings.cache);
+    Pieces found(box, sweep.settings.cache);
     if (!found.add(*object.getCollisionShape(), object.getWorldTransform(), -1, -1, true)) ++unanswered;
     const auto hit = cast.first_hit(object, found.pieces, std::min(1.0, limit()));
     if (hit) answer(*hit);
@@ -264,11 +235,11 @@ Expected<DistanceResult> distance_test(btCollisionWorld& world, const btConvexSh
   const std::function<void(btBroadphaseProxy&)> visit = [&](btBroadphaseProxy& proxy) {
     const auto& object = *static_cast<const btCollisionObject*>(proxy.m_clientObject);
     if (!passes(proxy, settings)) return;
-    Pieces found(box.lower, box.upper, settings.cache);
+    Pieces found(box, settings.cache);
     if (!found.add(*object.getCollisionShape(), object.getWorldTransform(), -1, -1, true)) ++result.unanswered;
     for (const Piece& piece : found.pieces) {
-      const PenetrationDepth answer = penetration_depth({&body->beside(piece.body), to_pd(pose)},
-                                                        {&piece.body.beside(*body), to_pd(piece.pose)}, scratch);
+      const PenetrationDepth answer = penetration_depth({&(*body)->beside(*piece.body), to_pd(pose)},
+                                                        {&piece.body->beside(**body), to_pd(piece.pose)}, scratch);
       WorldHit hit;
       fill(hit, object, piece, answer);
       if (hit.distance > least || (result.nearest && hit.distance == least)) continue;

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <variant>
+
+#include "depth/difference/smooth_difference.hpp"
 
 namespace pd::detail {
 
@@ -22,29 +23,7 @@ Vec3 farthest_against(const PosedShape& shape, const Vec3& n) {
     return shape.pose.apply(polytope->vertex(best));
   }
   const Mat3 rotation = shape.pose.nearest_rotation();
-  const Vec3 way = -(rotation.transpose() * n);
-  const auto round = [&](int axis, double radius) {
-    Vec3 radial = way;
-    radial[axis] = 0;
-    const double length = radial.norm();
-    return length > 0 ? Vec3(radius / length * radial) : Vec3(Vec3::Zero());
-  };
-  Vec3 local;
-  if (const auto* cylinder = std::get_if<Cylinder>(&shape.shape->core())) {
-    local = round(cylinder->axis, cylinder->radius);
-    local[cylinder->axis] = way[cylinder->axis] > 0 ? cylinder->half_height : -cylinder->half_height;
-  } else if (const auto* cone = std::get_if<Cone>(&shape.shape->core())) {
-    local = round(cone->axis, cone->radius);
-    local[cone->axis] = -cone->half_height;
-    const Vec3 apex = cone->half_height * Vec3::Unit(cone->axis);
-    if (apex.dot(way) > local.dot(way)) local = apex;
-  } else if (const auto* spheres = std::get_if<SphereHull>(&shape.shape->core())) {
-    local = spheres->support(way);
-  } else {
-    const Vec3& radii = std::get<Ellipsoid>(shape.shape->core()).radii;
-    local = radii.cwiseProduct(radii.cwiseProduct(way)) / radii.cwiseProduct(way).norm();
-  }
-  return rotation * local + shape.pose.translation();
+  return rotation * support_point(shape.shape->core(), -(rotation.transpose() * n)) + shape.pose.translation();
 }
 
 void drop_point(ContactManifold& points, int i) {

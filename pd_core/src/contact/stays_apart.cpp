@@ -1,69 +1,20 @@
-#include "rollback/stays_apart.hpp"
+#include "pd/contact/stays_apart.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace pd::detail {
+#include "depth/difference/smooth_difference.hpp"
+
+namespace pd {
 
 namespace {
 
-/// Hulls of more corners are left to queries.
-constexpr int kMostCorners = 128;
-
-/// The point of a core that is the farthest along a direction in its frame.
-struct Farthest {
-  const Vec3& d;
-
-  Vec3 operator()(const ConvexPolytope& core) const {
-    if (core.num_vertices() > kMostCorners) return Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
-    int farthest = 0;
-    double most = -HUGE_VAL;
-    for (int v = 0; v < core.num_vertices(); ++v) {
-      const double along = core.vertex(v).dot(d);
-      if (along > most) {
-        most = along;
-        farthest = v;
-      }
-    }
-    return core.vertex(farthest);
-  }
-  Vec3 operator()(const Ellipsoid& core) const {
-    const Vec3 scaled = core.radii.cwiseProduct(d);
-    return core.radii.cwiseProduct(scaled) / scaled.norm();
-  }
-  Vec3 operator()(const Cylinder& core) const {
-    Vec3 point = on_circle(core.axis, core.radius);
-    point[core.axis] = d[core.axis] < 0 ? -core.half_height : core.half_height;
-    return point;
-  }
-  Vec3 operator()(const Cone& core) const {
-    Vec3 rim = on_circle(core.axis, core.radius);
-    rim[core.axis] = -core.half_height;
-    const Vec3 apex = core.half_height * Vec3::Unit(core.axis);
-    return apex.dot(d) > rim.dot(d) ? apex : rim;
-  }
-  Vec3 operator()(const SphereHull& core) const {
-    Vec3 farthest = Vec3::Zero();
-    double most = -HUGE_VAL;
-    for (const Sphere& sphere : core.spheres()) {
-      const Vec3 point = sphere.centre + sphere.radius / d.norm() * d;
-      if (point.dot(d) > most) {
-        most = point.dot(d);
-        farthest = point;
-      }
-    }
-    return farthest;
-  }
-
- private:
-  [[nodiscard]] Vec3 on_circle(int axis, double radius) const {
-    Vec3 point = d;
-    point[axis] = 0;
-    const double length = point.norm();
-    return length > 0 ? Vec3(radius / length * point) : point;
-  }
-};
+/// The point of a core that is the farthest along a direction of its frame; NaN if the direction is.
+Vec3 farthest(const MovingShape& body, const Vec3& local) {
+  if (!local.allFinite()) return Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+  return detail::support_point(body.start.shape->core(), local);
+}
 
 }  // namespace
 
@@ -74,10 +25,8 @@ StaysApart::StaysApart(const MovingShape& body, double duration)
       normal_(Vec3::Constant(std::numeric_limits<double>::quiet_NaN())) {
   const ConvexShape& shape = *body.start.shape;
   for (int axis = 0; axis < 3; ++axis) {
-    const Vec3 up = Vec3::Unit(axis);
-    const Vec3 down = -up;
-    upper_[axis] = std::visit(Farthest{up}, shape.core())[axis] + shape.margin();
-    lower_[axis] = std::visit(Farthest{down}, shape.core())[axis] - shape.margin();
+    upper_[axis] = farthest(body, Vec3::Unit(axis))[axis] + shape.margin();
+    lower_[axis] = farthest(body, -Vec3::Unit(axis))[axis] - shape.margin();
   }
 }
 
@@ -102,13 +51,13 @@ double StaysApart::height(int sixteenths) {
   const Pose& then = pose(sixteenths);
   const ConvexShape& shape = *body_.start.shape;
   const Vec3 local = -(then.rotation().transpose() * normal_);
-  const Vec3 first = std::visit(Farthest{local}, shape.core());
-  const double apart = normal_.dot(then.translation()) - first.dot(local) - shape.margin() * local.norm();
+  const double apart =
+      normal_.dot(then.translation()) - farthest(body_, local).dot(local) - shape.margin() * local.norm();
   heights_[k] = std::isnan(apart) ? -HUGE_VAL : apart;
   return heights_[k];
 }
 
-double StaysApart::at_start(const Level& direction) {
+double StaysApart::at_start(const SupportLevel& direction) {
   turn_to(direction.normal);
   return height(0) - direction.level;
 }
@@ -116,10 +65,10 @@ double StaysApart::at_start(const Level& direction) {
 Vec3 StaysApart::first_along(const Vec3& direction) const {
   const Pose& start = body_.start.pose;
   const Vec3 local = -(start.rotation().transpose() * direction);
-  return start.apply(std::visit(Farthest{local}, body_.start.shape->core()));
+  return start.apply(farthest(body_, local));
 }
 
-bool StaysApart::proved(const Level& direction, double least) {
+bool StaysApart::proved(const SupportLevel& direction, double least) {
   turn_to(direction.normal);
   const double needed = direction.level + least;
   const double ends = std::min(height(0), height(kMostParts));
@@ -150,13 +99,11 @@ StaysApart::Faces StaysApart::beside(const StillTriangle& triangle, int sixteent
 }
 
 double StaysApart::beside_at_start(const StillTriangle& triangle) {
-  if (!lower_.allFinite()) return -HUGE_VAL;
   const Faces apart = beside(triangle, 0);
   return *std::max_element(apart.begin(), apart.end());
 }
 
 bool StaysApart::proved_beside(const StillTriangle& triangle, double least) {
-  if (!lower_.allFinite()) return false;
   const Faces first = beside(triangle, 0), last = beside(triangle, kMostParts);
   std::size_t face = 0;
   const auto ends = [&](std::size_t k) { return std::min(first[k], last[k]); };
@@ -182,4 +129,4 @@ bool StaysApart::proved_beside(const StillTriangle& triangle, double least) {
   return false;
 }
 
-}  // namespace pd::detail
+}  // namespace pd

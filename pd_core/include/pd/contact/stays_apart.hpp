@@ -1,5 +1,6 @@
 /// @file
-/// True if a moving body stays apart from one that stands still, proved by supports along one direction.
+/// Proves by supports along one direction that a moving body stays apart from what stands still, without a query of
+/// their distance. The proofs are those of time_of_impact.hpp; here many triangles share one motion.
 ///
 /// Along a unit direction n the bodies are apart by s(t) = min <p(t), n> - level, p in the moving one and `level` the
 /// support of the other. Between two times t0, t1 whose s is known
@@ -13,14 +14,13 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 
 #include "pd/contact/time_of_impact.hpp"
 
-namespace pd::detail {
+namespace pd {
 
-/// A direction, and how far the body that stands still comes along it.
-struct Level {
+/// A direction, and how far what stands still comes along it.
+struct SupportLevel {
   Vec3 normal;  ///< unit
   double level;
 };
@@ -38,14 +38,13 @@ class StaysApart {
   /// `body` must outlive the object.
   StaysApart(const MovingShape& body, double duration);
 
-  /// Returns s at the start; -HUGE_VAL if the shape has too many corners for a look at each.
-  [[nodiscard]] double at_start(const Level& direction);
-  /// Returns the point of the core that is the first along a direction, in the world, where the motion begins. It is
-  /// NaN if the shape has too many corners.
+  /// Returns s at the start.
+  [[nodiscard]] double at_start(const SupportLevel& direction);
+  /// Returns the point of the core that is the first along a direction, in the world, where the motion begins.
   [[nodiscard]] Vec3 first_along(const Vec3& direction) const;
   /// True if s(t) >= least is proved for all of the motion.
-  [[nodiscard]] bool proved(const Level& direction, double least);
-  /// Returns the distance of a triangle at the start along the best face of the body's box; -HUGE_VAL without a box.
+  [[nodiscard]] bool proved(const SupportLevel& direction, double least);
+  /// Returns the distance of a triangle at the start along the best face of the body's box.
   [[nodiscard]] double beside_at_start(const StillTriangle& triangle);
   /// True if a triangle is proved to stay apart by `least` along one face of the body's box.
   [[nodiscard]] bool proved_beside(const StillTriangle& triangle, double least);
@@ -66,7 +65,7 @@ class StaysApart {
   const MovingShape& body_;
   double duration_;
   double bulge_;  ///< below the chord of the whole motion
-  Vec3 lower_;    ///< of the box about the shape, in its frame; NaN: the shape has too many corners
+  Vec3 lower_;    ///< of the box about the shape, in its frame
   Vec3 upper_;
   std::array<Pose, kMostParts + 1> poses_;
   std::array<bool, kMostParts + 1> posed_{};
@@ -74,4 +73,4 @@ class StaysApart {
   std::array<double, kMostParts + 1> heights_;  ///< along `normal_`; NaN: not asked for yet
 };
 
-}  // namespace pd::detail
+}  // namespace pd
