@@ -32,14 +32,6 @@ class Counter {
 struct SolverCounters {
   Counter calls, overlapping, touching, separated, warm, unsupported, fallback, refused_poses, support_calls,
       nanoseconds, exact_signs, wider, covered, skipped_triangles, deep_unions, deep_unions_nearly, deep_unions_left;
-  template <class Visit>
-  void for_each(Visit&& visit) {
-    for (Counter* counter : {&calls, &overlapping, &touching, &separated, &warm, &unsupported, &fallback,
-                             &refused_poses, &support_calls, &nanoseconds, &exact_signs, &wider, &covered,
-                             &skipped_triangles, &deep_unions, &deep_unions_nearly, &deep_unions_left}) {
-      visit(*counter);
-    }
-  }
 };
 
 struct ThreadBuffers {

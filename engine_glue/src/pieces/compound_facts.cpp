@@ -24,9 +24,19 @@ constexpr btScalar kNeighbourhood = 0x1p-6F;
 /// How near another child's box comes to one with these corners, to be its neighbour.
 btScalar reach_of(const btVector3& lower, const btVector3& upper) { return kNeighbourhood * (upper - lower).length(); }
 
+/// True if a child may come within reach of a point of another one's core.
+bool comes_near(const UnionPiece& own, const UnionPiece& other, const NearPoint& near) {
+  // Surfaces lie flush, not cores, where margins differ.
+  const double far = near.reach + std::abs(own.margin - other.margin);
+  return std::none_of(other.planes.begin(), other.planes.end(),
+                      [&](const PiecePlane& plane) { return plane.height(near.point) > far; });
+}
+
 const ConvexShape* taken_of(const CachedShape& shape) { return shape.sharp ? shape.sharp.get() : shape.body.get(); }
 
 }  // namespace
+
+double CompoundFacts::Child::known_within() const { return 0.5 * static_cast<double>(reach_of(lower, upper)); }
 
 CompoundFacts::Known& CompoundFacts::known_of(const btCompoundShape& compound) {
   const auto is_recent = [&] { return recent_[0].of == &compound && recent_[0].visit == visit_; };
@@ -116,7 +126,7 @@ CompoundFacts::Child& CompoundFacts::surrounded(const ChildOf& of, Known& known,
 FacetCover CompoundFacts::cover_of(const ChildOf& of, std::size_t facet, double slack, BulletShapeCache& cache) {
   Known& known = known_of(of.compound);
   Child& child = surrounded(of, known, cache);
-  if (facet >= child.facets.size() || slack > 0.5 * static_cast<double>(reach_of(child.lower, child.upper))) {
+  if (facet >= child.facets.size() || slack > child.known_within()) {
     return FacetCover::some;
   }
   FacetCover& cover = child.facets[facet];
@@ -126,20 +136,17 @@ FacetCover CompoundFacts::cover_of(const ChildOf& of, std::size_t facet, double 
 
 const std::vector<int>* CompoundFacts::neighbours(const ChildOf& of, double reach, BulletShapeCache& cache) {
   const Child& own = surrounded(of, known_of(of.compound), cache);
-  return reach <= 0.5 * static_cast<double>(reach_of(own.lower, own.upper)) ? &own.neighbours : nullptr;
+  return reach <= own.known_within() ? &own.neighbours : nullptr;
 }
 
 bool CompoundFacts::may_hold(const ChildOf& of, const NearPoint& near, BulletShapeCache& cache) {
   Known& known = known_of(of.compound);
   const Child& own = surrounded(of, known, cache);
-  if (near.slack > 0.5 * static_cast<double>(reach_of(own.lower, own.upper))) return true;
+  if (near.slack > own.known_within()) return true;
   return std::any_of(own.neighbours.begin(), own.neighbours.end(), [&](int i) {
     const Child& other = known.children[static_cast<std::size_t>(i)];
     if (other.piece.planes.empty()) return !other.source->isConvex();
-    // Surfaces lie flush, not cores, where margins differ.
-    const double far = near.reach + std::abs(own.piece.margin - other.piece.margin);
-    const auto parts = [&](const PiecePlane& plane) { return plane.height(near.point) > far; };
-    return std::none_of(other.piece.planes.begin(), other.piece.planes.end(), parts);
+    return comes_near(own.piece, other.piece, near);
   });
 }
 
@@ -147,7 +154,7 @@ bool CompoundFacts::rising_near(const ChildOf& of, const NearPoint& near, const 
                                 std::vector<int>& rising) {
   Known& known = known_of(of.compound);
   const Child& own = surrounded(of, known, cache);
-  if (near.slack > 0.5 * static_cast<double>(reach_of(own.lower, own.upper))) return false;
+  if (near.slack > own.known_within()) return false;
   rising.clear();
   for (const int i : own.neighbours) {
     const Child& other = known.children[static_cast<std::size_t>(i)];
@@ -158,10 +165,7 @@ bool CompoundFacts::rising_near(const ChildOf& of, const NearPoint& near, const 
     const double level_of_core = beyond.level - other.piece.margin;
     const auto rises = [&](const Vec3& corner) { return beyond.n.dot(corner) > level_of_core; };
     if (std::none_of(other.corners.begin(), other.corners.end(), rises)) continue;
-    // Surfaces lie flush, not cores, where margins differ.
-    const double far = near.reach + std::abs(own.piece.margin - other.piece.margin);
-    const auto parts = [&](const PiecePlane& plane) { return plane.height(near.point) > far; };
-    if (std::none_of(other.piece.planes.begin(), other.piece.planes.end(), parts)) rising.push_back(i);
+    if (comes_near(own.piece, other.piece, near)) rising.push_back(i);
   }
   return true;
 }

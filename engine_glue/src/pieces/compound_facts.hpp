@@ -82,6 +82,9 @@ class CompoundFacts {
     btVector3 upper;
     std::vector<FacetCover> facets;
     std::vector<int> neighbours;  ///< by number
+
+    /// Neighbours within this distance are all known.
+    [[nodiscard]] double known_within() const;
   };
   struct Known {
     std::uint64_t change = 1;  ///< counts those of children

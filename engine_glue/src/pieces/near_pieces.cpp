@@ -2,7 +2,6 @@
 
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
 #include <BulletCollision/CollisionShapes/btConvexShape.h>
-#include <BulletCollision/CollisionShapes/btTriangleCallback.h>
 #include <BulletCollision/CollisionShapes/btTriangleShape.h>
 
 #include <algorithm>
@@ -12,12 +11,13 @@
 
 #include "pd/bullet/scalar.hpp"
 #include "shapes/child_tree.hpp"
+#include "shapes/each_triangle.hpp"
 
 namespace pd::detail {
 
 namespace {
 
-/// Of so few triangles, and for so few contacts, each is compared; of more, groups of them, or a large body on a fine
+/// Of so few triangles, and for so few contacts, each is compared; of more, sorted ones, or a large body on a fine
 /// mesh would compare every triangle that it meets with every other.
 constexpr std::size_t kFewTriangles = 128;
 constexpr int kFewContacts = 12;
@@ -31,34 +31,6 @@ struct NearPieces::Search {
   const Beyond* beyond;
   const StepShapes& shapes;
   std::vector<const UnionPiece*>& found;
-};
-
-class NearPieces::TrianglesOf : public btTriangleCallback {
- public:
-  TrianglesOf(const btTransform& pose, double margin, const btCollisionObjectWrapper* except, const Search& search,
-              NearPieces& list)
-      : pose_(pose), margin_(margin), except_(except), beyond_(search.beyond), found_(search.found), list_(list) {}
-  void processTriangle(btVector3* corners, int part, int index) override {
-    if (except_ != nullptr && except_->m_partId == part && except_->m_index == index) return;
-    const std::array points{to_pd(pose_(corners[0])), to_pd(pose_(corners[1])), to_pd(pose_(corners[2]))};
-    if (beyond_ != nullptr) {
-      const auto height = [&](const Vec3& point) { return beyond_->n.dot(point); };
-      if (std::max({height(points[0]), height(points[1]), height(points[2])}) + margin_ <= beyond_->level) return;
-    }
-    UnionPiece& piece = list_.next_made();
-    set_triangle(points, margin_, piece);
-    if (piece.planes.empty()) return;
-    found_.push_back(&piece);
-    ++list_.num_made_;
-  }
-
- private:
-  const btTransform& pose_;
-  double margin_;
-  const btCollisionObjectWrapper* except_;
-  const Beyond* beyond_;
-  std::vector<const UnionPiece*>& found_;
-  NearPieces& list_;
 };
 
 UnionPiece& NearPieces::next_made() {
@@ -182,8 +154,8 @@ void NearPieces::collect_known(const btCollisionObjectWrapper& except, Search& s
     add_known(i, search.found);
   };
   if (triangles.size() > kFewTriangles && ++known_searches_ > kFewContacts) {
-    if (known_searches_ == kFewContacts + 1) known_boxes_.make(triangles);
-    known_boxes_.each_meeting(lower, upper, visit);
+    if (known_searches_ == kFewContacts + 1) known_sorted_.make(triangles);
+    known_sorted_.each_meeting(lower, upper, visit);
     return;
   }
   for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -255,8 +227,20 @@ void NearPieces::collect(const btCollisionShape& shape, const btTransform& pose,
       collect_known(*except, search, local - extent, local + extent);
       return;
     }
-    TrianglesOf triangles(pose, static_cast<double>(concave.getMargin()), except, search, *this);
-    concave.processAllTriangles(&triangles, local - extent, local + extent);
+    const auto margin = static_cast<double>(concave.getMargin());
+    for_each_triangle(concave, local - extent, local + extent, [&](const btVector3* corners, int part, int index) {
+      if (except != nullptr && except->m_partId == part && except->m_index == index) return;
+      const std::array points{to_pd(pose(corners[0])), to_pd(pose(corners[1])), to_pd(pose(corners[2]))};
+      if (const Beyond* beyond = search.beyond) {
+        const auto height = [&](const Vec3& point) { return beyond->n.dot(point); };
+        if (std::max({height(points[0]), height(points[1]), height(points[2])}) + margin <= beyond->level) return;
+      }
+      UnionPiece& piece = next_made();
+      set_triangle(points, margin, piece);
+      if (piece.planes.empty()) return;
+      search.found.push_back(&piece);
+      ++num_made_;
+    });
   } else if (shape.isConvex()) {
     btVector3 lower, upper;
     shape.getAabb(pose, lower, upper);

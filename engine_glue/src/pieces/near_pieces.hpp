@@ -14,7 +14,7 @@
 #include "pieces/compound_facts.hpp"
 #include "pieces/piece_wrapper.hpp"
 #include "pieces/shared_edges.hpp"
-#include "pieces/triangle_boxes.hpp"
+#include "pieces/sorted_triangles.hpp"
 #include "shapes/triangles_around.hpp"
 
 class btConvexShape;
@@ -64,7 +64,6 @@ class NearPieces {
 
  private:
   struct Search;
-  class TrianglesOf;
   /// That of a body of the pair at hand.
   struct BodyFrame {
     const btCollisionObject* body = nullptr;
@@ -102,7 +101,7 @@ class NearPieces {
   double around_margin_ = 0;
   std::deque<UnionPiece> known_;  ///< the triangles around the pair at hand
   std::vector<bool> known_made_;
-  TriangleBoxes known_boxes_;
+  SortedTriangles known_sorted_;
   SharedEdges known_edges_;
   int known_searches_ = 0;  ///< among these, of the pair at hand
 };

@@ -5,32 +5,24 @@
 #include <BulletCollision/CollisionShapes/btConvex2dShape.h>
 #include <BulletCollision/CollisionShapes/btUniformScalingShape.h>
 
-#include <bit>
+#include <initializer_list>
 #include <vector>
 
 #include "pd/bullet/scalar.hpp"
 #include "pd/bullet/shape_conversion.hpp"
 #include "pd/record/record_shape.hpp"
+#include "shapes/mixed_bits.hpp"
 
 namespace pd::detail {
 
 namespace {
 
-/// A running number that changes with the bits of what is added.
-class Number {
- public:
-  explicit Number(std::uint64_t seed) : value_(seed) {}
-  Number& add(double x) {
-    value_ = (value_ ^ std::bit_cast<std::uint64_t>(x)) * 0x9E3779B97F4A7C15ULL;
-    value_ ^= value_ >> 32;
-    return *this;
-  }
-  Number& add(const Vec3& v) { return add(v.x()).add(v.y()).add(v.z()); }
-  [[nodiscard]] std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_;
-};
+/// A key of what is added, unlike those of other kinds of shapes by `kind`.
+std::uint64_t key_of(std::uint64_t kind, std::initializer_list<Vec3> points, double last = 0) {
+  MixedBits bits(kind);
+  for (const Vec3& point : points) bits.add(point.x()).add(point.y()).add(point.z());
+  return bits.add(last).value();
+}
 
 /// Of a box to its corners; none of other shapes.
 std::optional<Vec3> half_extents(const btConvexShape& shape) {
@@ -73,32 +65,31 @@ std::optional<std::string> RecordShapes::convex(pd_record& record, const btConve
 std::optional<std::string> RecordShapes::sharp(pd_record& record, const btConvexShape& shape) {
   const auto half = half_extents(shape);
   if (!half) return convex(record, shape);
-  Number number(0xB0C5);
+  const std::uint64_t key = key_of(0xB0C5, {*half});
   if (half->minCoeff() > 0) {
-    return known(number.add(*half).value(),
-                 [&](const std::string& id) { pd_record_box(&record, id.c_str(), half->data(), 0); });
+    return known(key, [&](const std::string& id) { pd_record_box(&record, id.c_str(), half->data(), 0); });
   }
   std::vector<double> corners;  // a rectangle
   for (int i = 0; i < 8; ++i) {
     for (int axis = 0; axis < 3; ++axis) corners.push_back(((i >> axis) & 1) != 0 ? (*half)[axis] : -(*half)[axis]);
   }
-  return known(number.add(*half).value(),
-               [&](const std::string& id) { pd_record_convex(&record, id.c_str(), corners.data(), 8, 0); });
+  return known(key, [&](const std::string& id) { pd_record_convex(&record, id.c_str(), corners.data(), 8, 0); });
 }
 
 std::string RecordShapes::plane(pd_record& record, const btStaticPlaneShape& shape) {
   const Vec3 normal = to_pd(shape.getPlaneNormal());
   const auto offset = static_cast<double>(shape.getPlaneConstant());
-  return known(Number(0x91A7E).add(normal).add(offset).value(),
+  return known(key_of(0x91A7E, {normal}, offset),
                [&](const std::string& id) { pd_record_plane(&record, id.c_str(), normal.data(), offset); });
 }
 
 std::string RecordShapes::triangle(pd_record& record, const ConvexShape& triangle) {
-  Number number(0x741A);
+  MixedBits bits(0x741A);
   const ConvexPolytope& polytope = *triangle.polytope();
-  for (int v = 0; v < polytope.num_vertices(); ++v) number.add(polytope.vertex(v));
-  return known(number.add(triangle.margin()).value(),
-               [&](const std::string& id) { record_shape(record, id, triangle); });
+  for (int v = 0; v < polytope.num_vertices(); ++v) {
+    for (const double x : polytope.vertex(v)) bits.add(x);
+  }
+  return known(bits.add(triangle.margin()).value(), [&](const std::string& id) { record_shape(record, id, triangle); });
 }
 
 }  // namespace pd::detail

@@ -14,10 +14,10 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <utility>
 
 #include "pair/contact_algorithm.hpp"
+#include "pair/dispatcher_owners.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "shapes/triangles_in_box.hpp"
 
@@ -25,21 +25,7 @@ namespace pd::detail {
 
 namespace {
 
-/// Bullet's callback knows its dispatcher, nothing else.
-struct Registry {
-  std::mutex mutex;
-  std::map<const btCollisionDispatcher*, RecordedWorld*> worlds;
-
-  static Registry& instance() {
-    static Registry registry;
-    return registry;
-  }
-  RecordedWorld* find(const btCollisionDispatcher& dispatcher) {
-    const std::scoped_lock lock(mutex);
-    const auto found = worlds.find(&dispatcher);
-    return found == worlds.end() ? nullptr : found->second;
-  }
-};
+using Owners = DispatcherOwners<RecordedWorld>;
 
 std::string engine_name() {
   return "Bullet " + std::to_string(BT_BULLET_VERSION / 100) + "." + std::to_string(BT_BULLET_VERSION % 100 / 10) +
@@ -155,15 +141,11 @@ struct RecordedWorld::Group {
 RecordedWorld::RecordedWorld(btCollisionWorld& world, const char* path, int every)
     : world_(world), dispatcher_(dynamic_cast<btCollisionDispatcher*>(world.getDispatcher())), every_(every) {
   if (dispatcher_ == nullptr || every < 1) return;
-  {
-    Registry& registry = Registry::instance();
-    const std::scoped_lock lock(registry.mutex);
-    if (registry.worlds.contains(dispatcher_)) return;
-    if (pd_record_open(&record_, path, engine_name().c_str(),
-                       sizeof(btScalar) == sizeof(float) ? PD_RECORD_FLOAT32 : PD_RECORD_FLOAT64, nullptr) == 0) {
-      return;
-    }
-    registry.worlds.emplace(dispatcher_, this);
+  if (!Owners::instance().add(dispatcher_, this)) return;
+  if (pd_record_open(&record_, path, engine_name().c_str(),
+                     sizeof(btScalar) == sizeof(float) ? PD_RECORD_FLOAT32 : PD_RECORD_FLOAT64, nullptr) == 0) {
+    Owners::instance().remove(dispatcher_);
+    return;
   }
   good_ = true;
   open_ = true;
@@ -182,11 +164,7 @@ bool RecordedWorld::close() {
   open_ = false;
   if (dispatcher_->getNearCallback() == &RecordedWorld::near_callback) dispatcher_->setNearCallback(before_);
   if (auto* dynamics = dynamic_cast<btDynamicsWorld*>(&world_)) dynamics->removeAction(this);
-  {
-    Registry& registry = Registry::instance();
-    const std::scoped_lock lock(registry.mutex);
-    registry.worlds.erase(dispatcher_);
-  }
+  Owners::instance().remove(dispatcher_);
   good_ = pd_record_close(&record_) != 0;
   return good_;
 }
@@ -198,7 +176,7 @@ void RecordedWorld::updateAction(btCollisionWorld*, btScalar step) {
 
 void RecordedWorld::near_callback(btBroadphasePair& pair, btCollisionDispatcher& dispatcher,
                                   const btDispatcherInfo& info) {
-  RecordedWorld* world = Registry::instance().find(dispatcher);
+  RecordedWorld* world = Owners::instance().find(dispatcher);
   if (world == nullptr) {  // another callback still calls this one
     btCollisionDispatcher::defaultNearCallback(pair, dispatcher, info);
     return;

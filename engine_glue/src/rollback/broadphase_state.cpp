@@ -25,6 +25,15 @@ void for_each_node(btDbvtNode* node, Visit&& visit) {
   visit(node);
 }
 
+/// What a broadphase counts, and the first proxies of its stages.
+template <class Broadphase>
+auto counters_of(Broadphase& b) {
+  return std::tie(b.m_stageRoots[0], b.m_stageRoots[1], b.m_stageRoots[2], b.m_stageCurrent, b.m_newpairs,
+                  b.m_fixedleft, b.m_updates_call, b.m_updates_done, b.m_updates_ratio, b.m_pid, b.m_cid,
+                  b.m_needcleanup);
+}
+static_assert(btDbvtBroadphase::STAGECOUNT == 2);
+
 int count_manifolds(btCollisionAlgorithm* algorithm) {
   if (algorithm == nullptr) {
     return -1;
@@ -79,16 +88,7 @@ void BroadphaseState::save_trees(const btDbvtBroadphase& broadphase, const btCol
       proxies_.push_back({proxy, *proxy});
     }
   }
-  std::copy(broadphase.m_stageRoots, broadphase.m_stageRoots + stage_roots_.size(), stage_roots_.begin());
-  stage_current_ = broadphase.m_stageCurrent;
-  new_pairs_ = broadphase.m_newpairs;
-  fixed_left_ = broadphase.m_fixedleft;
-  updates_call_ = broadphase.m_updates_call;
-  updates_done_ = broadphase.m_updates_done;
-  updates_ratio_ = broadphase.m_updates_ratio;
-  pid_ = broadphase.m_pid;
-  cid_ = broadphase.m_cid;
-  need_cleanup_ = broadphase.m_needcleanup;
+  counters_ = counters_of(broadphase);
 }
 
 /// Where each saved node lives now: at its old address where that is still a node's, else anywhere. The nodes of both
@@ -152,16 +152,7 @@ void BroadphaseState::restore_trees(btDbvtBroadphase& broadphase) const {
     *saved.proxy = saved.content;
     saved.proxy->leaf = now_at[saved.content.leaf];
   }
-  std::copy(stage_roots_.begin(), stage_roots_.end(), broadphase.m_stageRoots);
-  broadphase.m_stageCurrent = stage_current_;
-  broadphase.m_newpairs = new_pairs_;
-  broadphase.m_fixedleft = fixed_left_;
-  broadphase.m_updates_call = updates_call_;
-  broadphase.m_updates_done = updates_done_;
-  broadphase.m_updates_ratio = updates_ratio_;
-  broadphase.m_pid = pid_;
-  broadphase.m_cid = cid_;
-  broadphase.m_needcleanup = need_cleanup_;
+  counters_of(broadphase) = counters_;
 }
 
 void BroadphaseState::restore_pairs(btCollisionWorld& world) const {

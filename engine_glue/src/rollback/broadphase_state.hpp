@@ -11,6 +11,7 @@
 
 #include <array>
 #include <map>
+#include <tuple>
 #include <vector>
 
 namespace pd::detail {
@@ -54,16 +55,8 @@ class BroadphaseState {
   std::vector<SavedPair> pairs_;
   std::vector<SavedProxy> proxies_;
   std::array<SavedTree, 2> trees_{};
-  std::array<btDbvtProxy*, btDbvtBroadphase::STAGECOUNT + 1> stage_roots_{};
-  int stage_current_ = 0;
-  int new_pairs_ = 0;
-  int fixed_left_ = 0;
-  unsigned updates_call_ = 0;
-  unsigned updates_done_ = 0;
-  btScalar updates_ratio_ = 0;
-  int pid_ = 0;
-  int cid_ = 0;
-  bool need_cleanup_ = false;
+  std::tuple<btDbvtProxy*, btDbvtProxy*, btDbvtProxy*, int, int, int, unsigned, unsigned, btScalar, int, int, bool>
+      counters_{};
 };
 
 }  // namespace pd::detail

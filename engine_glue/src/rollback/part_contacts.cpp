@@ -5,9 +5,13 @@
 
 #include <algorithm>
 
+#include "pair/dispatcher_owners.hpp"
+
 namespace pd::detail {
 
 namespace {
+
+using Owners = DispatcherOwners<PartContacts>;
 
 /// How fast the bodies of a contact approach each other at a point of it, before the step.
 btScalar approach(const btPersistentManifold& manifold, const btManifoldPoint& point) {
@@ -30,42 +34,22 @@ PartContacts::PartContacts(btDispatcher* dispatcher, const Rule& rule, ImpactEne
     : dispatcher_(dynamic_cast<btCollisionDispatcher*>(dispatcher)), rule_(rule), energy_(energy) {
   if (dispatcher_ == nullptr) return;
   host_ = dispatcher_->getNearCallback();
-  {
-    const std::unique_lock lock(mutex());
-    active()[dispatcher_] = this;
-  }
+  Owners::instance().add(dispatcher_, this);
   dispatcher_->setNearCallback(&PartContacts::near);
 }
 
 PartContacts::~PartContacts() {
   if (dispatcher_ == nullptr) return;
   dispatcher_->setNearCallback(host_);
-  {
-    const std::unique_lock lock(mutex());
-    active().erase(dispatcher_);
-  }
+  Owners::instance().remove(dispatcher_);
   for (const KeptErp& kept : kept_) {
     kept.point->m_contactERP = kept.value;
     kept.point->m_contactPointFlags &= ~BT_CONTACT_FLAG_HAS_CONTACT_ERP;
   }
 }
 
-std::map<const btCollisionDispatcher*, PartContacts*>& PartContacts::active() {
-  static std::map<const btCollisionDispatcher*, PartContacts*> all;
-  return all;
-}
-
-std::shared_mutex& PartContacts::mutex() {
-  static std::shared_mutex one;
-  return one;
-}
-
 void PartContacts::near(btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info) {
-  PartContacts* self = nullptr;
-  {
-    const std::shared_lock lock(mutex());
-    self = active().at(&dispatcher);
-  }
+  PartContacts* const self = Owners::instance().find(dispatcher);
   self->host_(pair, dispatcher, info);
   if (pair.m_algorithm == nullptr) return;
   const bool bouncing = bounces(pair.m_pProxy0) && bounces(pair.m_pProxy1);

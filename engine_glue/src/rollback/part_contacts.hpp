@@ -4,9 +4,7 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 
-#include <map>
 #include <mutex>
-#include <shared_mutex>
 #include <vector>
 
 #include "rollback/impact_energy.hpp"
@@ -43,9 +41,6 @@ class PartContacts {
     btScalar value;
   };
 
-  /// Bullet's callback has no word of whom it works for but the dispatcher; worlds may step on several threads.
-  static std::map<const btCollisionDispatcher*, PartContacts*>& active();
-  static std::shared_mutex& mutex();
   static void near(btBroadphasePair& pair, btCollisionDispatcher& dispatcher, const btDispatcherInfo& info);
 
   void drop_of_bouncing(btPersistentManifold& manifold) const;

@@ -11,33 +11,14 @@
 
 #include "pd/numeric/vector.hpp"
 #include "pd/shape/pose.hpp"
+#include "shapes/mixed_bits.hpp"
 
 namespace pd {
 
 namespace {
 
 using Corner = std::array<double, 3>;
-
-struct Bytes {
-  std::size_t operator()(const Corner& corner) const {
-    std::uint64_t result = 0xCBF29CE484222325ULL;
-    for (const double x : corner) {
-      std::uint64_t word = 0;
-      std::memcpy(&word, &x, sizeof(x));
-      result = (result ^ word) * 0x9E3779B97F4A7C15ULL;
-      result ^= result >> 32U;
-    }
-    return result;
-  }
-  std::size_t operator()(const std::array<int, 3>& ids) const {
-    std::uint64_t result = 0;
-    for (const int id : ids) {
-      result = (result ^ static_cast<std::uint64_t>(static_cast<std::uint32_t>(id))) * 0x9E3779B97F4A7C15ULL;
-      result ^= result >> 29U;
-    }
-    return result;
-  }
-};
+using Corners = std::array<std::uint64_t, 3>;  ///< of a triangle or, with a 0, of an edge: their numbers
 
 /// The arrays of one part while they are locked.
 class LockedPart {
@@ -108,7 +89,7 @@ class MeshReader {
   std::optional<Error> read(const LockedPart& part, const std::string& name) {
     for (int t = 0; t < part.num_triangles; ++t) {
       const auto where = [&] { return name + ".triangles[" + std::to_string(t) + "]"; };
-      std::array<int, 3> ids{};
+      Corners ids{};
       std::array<Vec3, 3> points;
       for (int k = 0; k < 3; ++k) {
         const std::int64_t index = part.index(t, k);
@@ -127,8 +108,7 @@ class MeshReader {
           }
           points[static_cast<std::size_t>(k)][static_cast<Eigen::Index>(i)] = corner[i];
         }
-        ids[static_cast<std::size_t>(k)] =
-            corners_.try_emplace(corner, static_cast<int>(corners_.size())).first->second;
+        ids[static_cast<std::size_t>(k)] = corners_.try_emplace(corner, corners_.size()).first->second;
       }
       take(ids, points);
     }
@@ -144,7 +124,7 @@ class MeshReader {
   }
 
  private:
-  void take(std::array<int, 3> ids, const std::array<Vec3, 3>& points) {
+  void take(Corners ids, const std::array<Vec3, 3>& points) {
     ++report_.triangles;
     if ((points[1] - points[0]).cross(points[2] - points[0]).isZero(0)) {
       ++report_.without_area;
@@ -162,9 +142,9 @@ class MeshReader {
 
   Corner scaling_;
   MeshReport report_;
-  std::unordered_map<Corner, int, Bytes> corners_;
-  std::unordered_set<std::array<int, 3>, Bytes> triangles_;
-  std::unordered_map<std::array<int, 3>, int, Bytes> edges_;  // summed over only
+  std::unordered_map<Corner, std::uint64_t, detail::HashOfArray> corners_;
+  std::unordered_set<Corners, detail::HashOfArray> triangles_;
+  std::unordered_map<Corners, int, detail::HashOfArray> edges_;  // summed over only
 };
 
 }  // namespace

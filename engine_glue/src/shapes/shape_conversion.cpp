@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "pd/bullet/scalar.hpp"
+#include "shapes/mixed_bits.hpp"
 
 namespace pd {
 
@@ -256,37 +257,27 @@ Expected<ConvexShape> from_minkowski_sum(const btMinkowskiSumShape& shape) {
   return swept_hull(shape, points, a->margin() + b->margin());
 }
 
-/// A running hash over the bits of everything that the conversion reads.
+/// A hash over the bits of everything that the conversion reads.
 class Fingerprint {
  public:
-  void add(std::uint64_t word) { mix(lanes_[0], word); }
-  void add(double x) { add(std::bit_cast<std::uint64_t>(x)); }
+  void add(std::uint64_t word) { lanes_[0].add(word); }
+  void add(double x) { lanes_[0].add(x); }
   /// Each lane waits for its own last product alone: a hull's points are compared in a third of the time.
   void add(const btVector3& v) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      mix(lanes_[k], std::bit_cast<std::uint64_t>(static_cast<double>(v[static_cast<int>(k)])));
-    }
+    for (std::size_t k = 0; k < 3; ++k) lanes_[k].add(static_cast<double>(v[static_cast<int>(k)]));
   }
   void add(const btTransform& transform) {
-    for (int i = 0; i < 3; ++i) {
-      add(transform.getBasis()[i]);
-    }
+    for (int i = 0; i < 3; ++i) add(transform.getBasis()[i]);
     add(transform.getOrigin());
   }
   [[nodiscard]] std::uint64_t value() const {
-    std::uint64_t hash = lanes_[0];
-    mix(hash, lanes_[1]);
-    mix(hash, lanes_[2]);
-    return hash;
+    return detail::MixedBits(lanes_[0]).add(lanes_[1].value()).add(lanes_[2].value()).value();
   }
 
  private:
-  static void mix(std::uint64_t& hash, std::uint64_t word) {
-    hash = (hash ^ word) * 0x9E3779B97F4A7C15ULL;
-    hash ^= hash >> 32;
-  }
-
-  std::array<std::uint64_t, 3> lanes_{0xCBF29CE484222325ULL, 0x9AE16A3B2F90404FULL, 0xC2B2AE3D27D4EB4FULL};
+  std::array<detail::MixedBits, 3> lanes_{detail::MixedBits(0xCBF29CE484222325ULL),
+                                          detail::MixedBits(0x9AE16A3B2F90404FULL),
+                                          detail::MixedBits(0xC2B2AE3D27D4EB4FULL)};
 };
 
 }  // namespace

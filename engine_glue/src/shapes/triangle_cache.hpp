@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "shapes/cached_shape.hpp"
+#include "shapes/mixed_bits.hpp"
 
 namespace pd::detail {
 
@@ -34,7 +35,7 @@ class TriangleCache {
     if (slots_.empty()) {
       slots_.resize(kSlots);
     }
-    std::shared_ptr<CachedShape>& slot = slots_[hash(key) % kSlots];
+    std::shared_ptr<CachedShape>& slot = slots_[HashOfArray()(key) % kSlots];
     if (!holds(slot, key)) {
       slot = convert(triangle);
       slot->triangle = key;
@@ -50,17 +51,6 @@ class TriangleCache {
   static bool holds(const std::shared_ptr<CachedShape>& shape, const TriangleKey& key) {
     return shape && shape->triangle && std::memcmp(shape->triangle->data(), key.data(), sizeof(key)) == 0;
   }
-  static std::uint64_t hash(const TriangleKey& key) {
-    std::uint64_t result = 0xCBF29CE484222325ULL;
-    for (const btScalar x : key) {
-      std::uint64_t word = 0;
-      std::memcpy(&word, &x, sizeof(x));
-      result = (result ^ word) * 0x9E3779B97F4A7C15ULL;
-      result ^= result >> 32;
-    }
-    return result;
-  }
-
   std::vector<std::shared_ptr<CachedShape>> slots_;
   std::int64_t conversions_ = 0;
 };

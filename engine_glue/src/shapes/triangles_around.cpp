@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "shapes/each_triangle.hpp"
+
 namespace pd::detail {
 
 namespace {
@@ -37,45 +39,29 @@ bool BodyReach::meets(const MeshTriangle& triangle) const {
   return !out_of_reach(box_, corners, triangle.across, reach_, kRounding);
 }
 
-class TrianglesAround::Reader : public btTriangleCallback {
- public:
-  Reader(const btVector3& lower, const btVector3& upper, std::vector<MeshTriangle>& triangles)
-      : lower_(lower), upper_(upper), triangles_(triangles) {}
-
-  void processTriangle(btVector3* corners, int part, int index) override {
-    btVector3 lower = corners[0], upper = corners[0];
-    for (int i = 1; i < 3; ++i) {
-      lower.setMin(corners[i]);
-      upper.setMax(corners[i]);
-    }
-    // Trees of quantised boxes, and heightfields, offer more than what the box meets.
-    if (!boxes_meet(lower, upper, lower_, upper_)) return;
-    const Vec3 first = to_pd(corners[0]);
-    const Vec3 across = (to_pd(corners[1]) - first).cross(to_pd(corners[2]) - first);
-    const double size = std::abs(across.x()) + std::abs(across.y()) + std::abs(across.z());
-    // Also skips what is not a number.
-    if (!(size > 0 && size < std::numeric_limits<double>::infinity())) {
-      ++skipped;
-      return;
-    }
-    triangles_.push_back({{corners[0], corners[1], corners[2]}, lower, upper, across, part, index});
-  }
-
-  int skipped = 0;
-
- private:
-  const btVector3& lower_;
-  const btVector3& upper_;
-  std::vector<MeshTriangle>& triangles_;
-};
-
 int TrianglesAround::read(const btConcaveShape& mesh, const btVector3& lower, const btVector3& upper) {
   mesh_ = &mesh;
   lower_ = lower;
   upper_ = upper;
   read_.clear();
-  Reader reader(lower_, upper_, read_);
-  mesh.processAllTriangles(&reader, lower, upper);
+  int skipped = 0;
+  for_each_triangle(mesh, lower, upper, [&](const btVector3* corners, int part, int index) {
+    btVector3 low = corners[0], high = corners[0];
+    for (int i = 1; i < 3; ++i) {
+      low.setMin(corners[i]);
+      high.setMax(corners[i]);
+    }
+    if (!boxes_meet(low, high, lower, upper)) return;
+    const Vec3 first = to_pd(corners[0]);
+    const Vec3 across = (to_pd(corners[1]) - first).cross(to_pd(corners[2]) - first);
+    // Also skips what is not a number.
+    const double size = across.lpNorm<1>();
+    if (size > 0 && size < std::numeric_limits<double>::infinity()) {
+      read_.push_back({{corners[0], corners[1], corners[2]}, low, high, across, part, index});
+    } else {
+      ++skipped;
+    }
+  });
   order_.clear();
   for (std::size_t i = 0; i < read_.size(); ++i) order_.emplace_back(read_[i].number(), i);
   std::sort(order_.begin(), order_.end(), [&](const auto& x, const auto& y) {
@@ -83,7 +69,7 @@ int TrianglesAround::read(const btConcaveShape& mesh, const btVector3& lower, co
   });
   triangles_.clear();
   for (const auto& [number, i] : order_) triangles_.push_back(read_[i]);
-  return reader.skipped;
+  return skipped;
 }
 
 std::size_t TrianglesAround::find(int part, int index, const btVector3* corners) const {

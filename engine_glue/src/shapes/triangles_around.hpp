@@ -5,7 +5,6 @@
 
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
 #include <BulletCollision/CollisionShapes/btConvexShape.h>
-#include <BulletCollision/CollisionShapes/btTriangleCallback.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -68,8 +67,6 @@ class TrianglesAround {
   [[nodiscard]] bool cover(const btConcaveShape& mesh, const btVector3& lower, const btVector3& upper) const;
 
  private:
-  class Reader;
-
   const btConcaveShape* mesh_ = nullptr;
   btVector3 lower_;
   btVector3 upper_;

@@ -6,40 +6,9 @@
 #include <utility>
 
 #include "pd/bullet/scalar.hpp"
+#include "shapes/each_triangle.hpp"
 
 namespace pd::detail {
-
-namespace {
-
-class Collector : public btTriangleCallback {
- public:
-  Collector(const btVector3& lower, const btVector3& upper, double margin, const Whereabouts* near)
-      : lower_(lower), upper_(upper), margin_(margin), near_(near) {}
-
-  void processTriangle(btVector3* corners, int part, int index) override {
-    // A tree of quantised boxes, and heightfields, offer more than what the box meets.
-    const auto margin = static_cast<btScalar>(margin_);
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto [low, high] = std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
-      if (low - margin > upper_[axis] || high + margin < lower_[axis]) return;
-    }
-    const std::array points{to_pd(corners[0]), to_pd(corners[1]), to_pd(corners[2])};
-    // Poses in single precision turn lengths by less.
-    constexpr double kTurned = 1 + 1e-5;
-    if (near_ != nullptr && distance_from(near_->centre, points) > kTurned * (near_->radius + margin_)) return;
-    triangles.push_back({points, part, index});
-  }
-
-  std::vector<TriangleCorners> triangles;
-
- private:
-  btVector3 lower_;
-  btVector3 upper_;
-  double margin_;
-  const Whereabouts* near_;
-};
-
-}  // namespace
 
 // The Voronoi region of the point tells the nearest feature: C. Ericson, "Real-Time Collision Detection", 2005, section
 // 5.1.5.
@@ -72,9 +41,21 @@ double margin_of_triangles(const btConcaveShape& concave) {
 
 std::vector<TriangleCorners> corners_in_box(const btConcaveShape& concave, const btVector3& lower,
                                             const btVector3& upper, const Whereabouts* near) {
-  Collector collector(lower, upper, margin_of_triangles(concave), near);
-  concave.processAllTriangles(&collector, lower, upper);
-  return std::move(collector.triangles);
+  // Poses in single precision turn lengths by less.
+  constexpr double kTurned = 1 + 1e-5;
+  const double margin = margin_of_triangles(concave);
+  std::vector<TriangleCorners> triangles;
+  for_each_triangle(concave, lower, upper, [&](const btVector3* corners, int part, int index) {
+    const auto reach = static_cast<btScalar>(margin);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto [low, high] = std::minmax({corners[0][axis], corners[1][axis], corners[2][axis]});
+      if (low - reach > upper[axis] || high + reach < lower[axis]) return;
+    }
+    const std::array points{to_pd(corners[0]), to_pd(corners[1]), to_pd(corners[2])};
+    if (near != nullptr && distance_from(near->centre, points) > kTurned * (near->radius + margin)) return;
+    triangles.push_back({points, part, index});
+  });
+  return triangles;
 }
 
 std::shared_ptr<const ConvexShape> to_shape(const TriangleCorners& triangle, double margin) {

@@ -30,8 +30,8 @@ void for_each_ground_pair(Visit&& visit) {
     for (int j = 0; j < MAX_BROADPHASE_COLLISION_TYPES; ++j) {
       const bool body = btBroadphaseProxy::isConvex(i) || btBroadphaseProxy::isCompound(i);
       if (body && (detail::takes_mesh(j) || j == STATIC_PLANE_PROXYTYPE)) {
-        visit(i, j, false);
-        visit(j, i, true);
+        visit(i, j, 0);
+        visit(j, i, 1);
       }
     }
   }
@@ -59,26 +59,34 @@ void renew_pairs(btCollisionWorld& world) {
 }
 
 /// Has a dispatcher ask the solver.
-void take_tables(btCollisionDispatcher& dispatcher, detail::Installation& installation, BulletContacts contacts) {
-  const bool whole = contacts == BulletContacts::one_shot;
+/// @param installation  null: Bullet's own algorithms
+void take_tables(btCollisionDispatcher& dispatcher, detail::Installation* installation, BulletContacts contacts) {
+  btCollisionConfiguration& bullets = *dispatcher.getCollisionConfiguration();
+  const bool ours = installation != nullptr, whole = ours && contacts == BulletContacts::one_shot;
+  const auto take_contacts = [&](int i, int j, btCollisionAlgorithmCreateFunc* create) {
+    dispatcher.registerCollisionCreateFunc(i, j, create ? create : bullets.getCollisionAlgorithmCreateFunc(i, j));
+  };
+  const auto take_closest = [&](int i, int j, btCollisionAlgorithmCreateFunc* create) {
+    dispatcher.registerClosestPointsCreateFunc(i, j,
+                                               create ? create : bullets.getClosestPointsAlgorithmCreateFunc(i, j));
+  };
   for_each_convex_pair([&](int i, int j) {
-    dispatcher.registerCollisionCreateFunc(i, j, whole ? installation.one_shot(false) : installation.persistent());
-    dispatcher.registerClosestPointsCreateFunc(i, j, whole ? installation.one_shot(true) : installation.persistent());
+    btCollisionAlgorithmCreateFunc* const persistent = ours ? &installation->persistent : nullptr;
+    take_contacts(i, j, whole ? &installation->contacts : persistent);
+    take_closest(i, j, whole ? &installation->closest : persistent);
   });
-  btCollisionConfiguration* configuration = dispatcher.getCollisionConfiguration();
-  for_each_ground_pair([&](int i, int j, bool swapped) {
-    const bool plane = (swapped ? i : j) == STATIC_PLANE_PROXYTYPE;
-    const bool compound = btBroadphaseProxy::isCompound(swapped ? j : i);
-    btCollisionAlgorithmCreateFunc* ours = !plane     ? installation.mesh(swapped)
-                                           : compound ? installation.compound_on_plane(swapped)
-                                                      : installation.plane(swapped);
-    dispatcher.registerCollisionCreateFunc(i, j, whole ? ours : configuration->getCollisionAlgorithmCreateFunc(i, j));
+  for_each_ground_pair([&](int i, int j, int swapped) {
+    const auto choose = [&]() -> btCollisionAlgorithmCreateFunc* {
+      if (!whole) return nullptr;
+      if ((swapped != 0 ? i : j) != STATIC_PLANE_PROXYTYPE) return &installation->mesh[swapped];
+      if (btBroadphaseProxy::isCompound(swapped != 0 ? j : i)) return &installation->compound_on_plane[swapped];
+      return &installation->plane[swapped];
+    };
+    take_contacts(i, j, choose());
   });
   for_each_compound_pair([&](int i, int j) {
-    dispatcher.registerCollisionCreateFunc(
-        i, j, whole ? installation.compound() : configuration->getCollisionAlgorithmCreateFunc(i, j));
-    dispatcher.registerClosestPointsCreateFunc(
-        i, j, whole ? installation.compound_query() : configuration->getClosestPointsAlgorithmCreateFunc(i, j));
+    take_contacts(i, j, whole ? &installation->compound : nullptr);
+    take_closest(i, j, whole ? &installation->compound_query : nullptr);
   });
 }
 
@@ -97,7 +105,7 @@ class ActionsOfWorld : private btDiscreteDynamicsWorld {
 
 void install(btCollisionDispatcher& dispatcher, BulletPenetrationDepthSolver& solver, BulletContacts contacts) {
   detail::SolverCore& core = solver.core();
-  take_tables(dispatcher, detail::Installation::of(core, detail::InstalledIn::dispatchers), contacts);
+  take_tables(dispatcher, &detail::Installation::of(core, detail::InstalledIn::dispatchers), contacts);
   core.note_lone(&dispatcher);
 }
 
@@ -106,7 +114,7 @@ bool install(btCollisionWorld& world, BulletPenetrationDepthSolver& solver, Bull
   if (dispatcher == nullptr) return false;
   if (auto* dynamics = dynamic_cast<btDiscreteDynamicsWorld*>(&world)) {
     detail::Installation& installation = detail::Installation::of_world(solver.core(), dispatcher);
-    take_tables(*dispatcher, installation, contacts);
+    take_tables(*dispatcher, &installation, contacts);
     dynamics->removeAction(installation.step_action());  // of an earlier installation, if there was one
     dynamics->addAction(installation.step_action());
     solver.core().forget_lone(dispatcher);
@@ -128,19 +136,7 @@ bool uninstall(btCollisionWorld& world, BulletPenetrationDepthSolver& solver) {
     dynamics->removeAction(action);
   }
   if (!installed) return false;
-  btCollisionConfiguration* configuration = dispatcher->getCollisionConfiguration();
-  for_each_convex_pair([&](int i, int j) {
-    dispatcher->registerCollisionCreateFunc(i, j, configuration->getCollisionAlgorithmCreateFunc(i, j));
-    dispatcher->registerClosestPointsCreateFunc(i, j, configuration->getClosestPointsAlgorithmCreateFunc(i, j));
-  });
-  const auto give_back = [&](int i, int j) {
-    dispatcher->registerCollisionCreateFunc(i, j, configuration->getCollisionAlgorithmCreateFunc(i, j));
-  };
-  for_each_ground_pair([&](int i, int j, bool) { give_back(i, j); });
-  for_each_compound_pair([&](int i, int j) {
-    give_back(i, j);
-    dispatcher->registerClosestPointsCreateFunc(i, j, configuration->getClosestPointsAlgorithmCreateFunc(i, j));
-  });
+  take_tables(*dispatcher, nullptr, BulletContacts::one_shot);
   renew_pairs(world);
   return true;
 }

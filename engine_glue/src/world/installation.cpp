@@ -20,19 +20,16 @@ constexpr std::size_t kOfHosts = 0, kOfDispatchers = 1, kOfWorlds = 2;
 
 Installation::Installation(SolverCore& core, InstalledIn in)
     : SolverInWorld(core, in),
+      contacts(*this, {ContactTable::contacts}),
+      closest(*this, {ContactTable::closest_points}),
+      mesh{{*this, {mesh_contacts, false}}, {*this, {mesh_contacts, true}}},
+      compound_on_plane{{*this, {plane_contacts, false}}, {*this, {plane_contacts, true}}},
+      plane{{*this, {false}}, {*this, {true}}},
+      compound(*this, {compound_contacts, false}),
+      compound_query(*this, {}),
+      persistent(&depth_solver_),
       depth_solver_(*this),
-      step_action_(*this),
-      contacts_(*this, {ContactTable::contacts}),
-      closest_(*this, {ContactTable::closest_points}),
-      mesh_(*this, {mesh_contacts, false}),
-      swapped_mesh_(*this, {mesh_contacts, true}),
-      compound_(*this, {compound_contacts, false}),
-      compound_query_(*this, {}),
-      compound_on_plane_(*this, {plane_contacts, false}),
-      swapped_compound_on_plane_(*this, {plane_contacts, true}),
-      plane_(*this, {false}),
-      swapped_plane_(*this, {true}),
-      persistent_(&depth_solver_) {}
+      step_action_(*this) {}
 
 Installation& Installation::of(SolverCore& core, InstalledIn in) {
   return at(core, in == InstalledIn::hosts_own_table ? kOfHosts : kOfDispatchers, in);

@@ -23,21 +23,16 @@ class Installation final : public SolverInWorld {
 
   Installation(SolverCore& core, InstalledIn in);
 
-  /// For the table of contacts (`closest` false) or that of closest points.
-  [[nodiscard]] btCollisionAlgorithmCreateFunc* one_shot(bool closest) { return closest ? &closest_ : &contacts_; }
-  /// For the table of contacts: a convex body or compound against a mesh, or (`swapped`) the other way round.
-  [[nodiscard]] btCollisionAlgorithmCreateFunc* mesh(bool swapped) { return swapped ? &swapped_mesh_ : &mesh_; }
-  /// For the table of contacts: pairs with a compound, of compounds and convex bodies.
-  [[nodiscard]] btCollisionAlgorithmCreateFunc* compound() { return &compound_; }
-  /// For the table of closest points: the same pairs.
-  [[nodiscard]] btCollisionAlgorithmCreateFunc* compound_query() { return &compound_query_; }
-  /// For the table of contacts: convex against plane, or (`swapped`) plane against convex.
-  [[nodiscard]] btCollisionAlgorithmCreateFunc* plane(bool swapped) { return swapped ? &swapped_plane_ : &plane_; }
-  /// For the table of contacts: compound against plane, or (`swapped`) plane against compound.
-  [[nodiscard]] btCollisionAlgorithmCreateFunc* compound_on_plane(bool swapped) {
-    return swapped ? &swapped_compound_on_plane_ : &compound_on_plane_;
-  }
-  [[nodiscard]] btCollisionAlgorithmCreateFunc* persistent() { return &persistent_; }
+  CreateFuncOf<ContactAlgorithm> contacts;  ///< for the table of contacts
+  CreateFuncOf<ContactAlgorithm> closest;   ///< for that of closest points
+  // For the table of contacts; [1]: the bodies the other way round.
+  CreateFuncOf<UnionAlgorithm> mesh[2];               ///< a convex body or compound against a mesh
+  CreateFuncOf<UnionAlgorithm> compound_on_plane[2];  ///< a compound against a plane
+  CreateFuncOf<PlaneAlgorithm> plane[2];              ///< a convex body against a plane
+  CreateFuncOf<UnionAlgorithm> compound;              ///< pairs with a compound, of compounds and convex bodies
+  CreateFuncOf<CompoundQuery> compound_query;         ///< the same for the table of closest points
+  btConvexConvexAlgorithm::CreateFunc persistent;     ///< Bullet's, which asks `depth_solver`
+
   [[nodiscard]] btConvexPenetrationDepthSolver* depth_solver() { return &depth_solver_; }
   /// Tells that a step has ended; for `btDynamicsWorld::addAction`.
   [[nodiscard]] btActionInterface* step_action() { return &step_action_; }
@@ -69,17 +64,6 @@ class Installation final : public SolverInWorld {
 
   DepthSolver depth_solver_;
   StepAction step_action_;
-  CreateFuncOf<ContactAlgorithm> contacts_;
-  CreateFuncOf<ContactAlgorithm> closest_;
-  CreateFuncOf<UnionAlgorithm> mesh_;
-  CreateFuncOf<UnionAlgorithm> swapped_mesh_;
-  CreateFuncOf<UnionAlgorithm> compound_;
-  CreateFuncOf<CompoundQuery> compound_query_;
-  CreateFuncOf<UnionAlgorithm> compound_on_plane_;
-  CreateFuncOf<UnionAlgorithm> swapped_compound_on_plane_;
-  CreateFuncOf<PlaneAlgorithm> plane_;
-  CreateFuncOf<PlaneAlgorithm> swapped_plane_;
-  btConvexConvexAlgorithm::CreateFunc persistent_;
 };
 
 }  // namespace pd::detail

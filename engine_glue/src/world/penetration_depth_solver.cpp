@@ -1,6 +1,8 @@
 #include "pd/bullet/penetration_depth_solver.hpp"
 
+#include <cstdint>
 #include <cstdio>
+#include <utility>
 #include <vector>
 
 #include "pair/solver_core.hpp"
@@ -18,6 +20,27 @@ void keep_for_ever(std::unique_ptr<detail::SolverCore> core) {
   const std::lock_guard lock(mutex);
   kept->push_back(std::move(core));
 }
+
+using Total = BulletSolverStatistics;
+using Own = detail::SolverCounters;
+constexpr std::pair<std::int64_t Total::*, detail::Counter Own::*> kCounted[] = {
+    {&Total::calls, &Own::calls},
+    {&Total::overlapping, &Own::overlapping},
+    {&Total::touching, &Own::touching},
+    {&Total::separated, &Own::separated},
+    {&Total::warm, &Own::warm},
+    {&Total::unsupported, &Own::unsupported},
+    {&Total::fallback, &Own::fallback},
+    {&Total::refused_poses, &Own::refused_poses},
+    {&Total::support_calls, &Own::support_calls},
+    {&Total::nanoseconds, &Own::nanoseconds},
+    {&Total::exact_signs, &Own::exact_signs},
+    {&Total::wider_brackets, &Own::wider},
+    {&Total::covered_contacts, &Own::covered},
+    {&Total::skipped_triangles, &Own::skipped_triangles},
+    {&Total::deep_unions, &Own::deep_unions},
+    {&Total::deep_unions_nearly, &Own::deep_unions_nearly},
+    {&Total::deep_unions_left, &Own::deep_unions_left}};
 
 }  // namespace
 
@@ -77,40 +100,23 @@ bool BulletPenetrationDepthSolver::calcPenDepth(btSimplexSolverInterface& simple
 BulletSolverStatistics BulletPenetrationDepthSolver::statistics() const {
   BulletSolverStatistics result;
   core_->buffers.for_each([&](detail::ThreadBuffers& buffers) {
-    const detail::SolverCounters& counters = buffers.counters;
-    result.calls += counters.calls.read();
-    result.overlapping += counters.overlapping.read();
-    result.touching += counters.touching.read();
-    result.separated += counters.separated.read();
-    result.warm += counters.warm.read();
-    result.unsupported += counters.unsupported.read();
-    result.fallback += counters.fallback.read();
-    result.refused_poses += counters.refused_poses.read();
-    result.support_calls += counters.support_calls.read();
-    result.nanoseconds += counters.nanoseconds.read();
-    result.exact_signs += counters.exact_signs.read();
-    result.wider_brackets += counters.wider.read();
-    result.covered_contacts += counters.covered.read();
-    result.skipped_triangles += counters.skipped_triangles.read();
-    result.deep_unions += counters.deep_unions.read();
-    result.deep_unions_nearly += counters.deep_unions_nearly.read();
-    result.deep_unions_left += counters.deep_unions_left.read();
+    for (const auto& [total, counter] : kCounted) result.*total += (buffers.counters.*counter).read();
   });
   return result;
 }
 
 void BulletPenetrationDepthSolver::reset_statistics() {
   core_->buffers.for_each([](detail::ThreadBuffers& buffers) {
-    buffers.counters.for_each([](detail::Counter& counter) { counter.reset(); });
+    for (const auto& [total, counter] : kCounted) (buffers.counters.*counter).reset();
   });
 }
 
 btCollisionAlgorithmCreateFunc* BulletPenetrationDepthSolver::one_shot_create_func() {
-  return detail::Installation::of(*core_, detail::InstalledIn::hosts_own_table).one_shot(false);
+  return &detail::Installation::of(*core_, detail::InstalledIn::hosts_own_table).contacts;
 }
 
 btCollisionAlgorithmCreateFunc* BulletPenetrationDepthSolver::persistent_create_func() {
-  return detail::Installation::of(*core_, detail::InstalledIn::hosts_own_table).persistent();
+  return &detail::Installation::of(*core_, detail::InstalledIn::hosts_own_table).persistent;
 }
 
 }  // namespace pd
