@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "pd/bullet/scalar.hpp"
-#include "pd/depth/difference_queries.hpp"
+#include "pd/contact/farthest_point.hpp"
 #include "pieces/piece_wrapper.hpp"
 
 namespace pd::detail {
@@ -27,9 +27,9 @@ bool pass_each_other(const PosedShape& a, const PosedShape& b, const FreshPoints
   };
   if (std::none_of(points.points.begin(), end, pushes)) return false;
   const auto stay_apart = [&](const Vec3& normal) {
-    const auto overlap = support_of_difference(a, b, normal);
-    if (!overlap || overlap.value().value > slack) return false;
-    const auto left = static_cast<btScalar>(slack - overlap.value().value);
+    const double overlap = reach_along(a, b, normal);
+    if (!(overlap <= slack)) return false;
+    const auto left = static_cast<btScalar>(slack - overlap);
     return std::all_of(points.points.begin(), end, [&](const FreshPoint& point) {
       return step.closed_in_step(point.point_on_b, to_bullet(normal)) <= left;
     });

@@ -128,7 +128,7 @@ class SideRule {
   /// Out along a facet of the piece.
   [[nodiscard]] PieceExit exit_over(const PiecePlane& facet) const {
     const Vec3 n = cover_.frame().turn_back(facet.normal);
-    const Vec3 farthest = farthest_against(side_.other, n);
+    const Vec3 farthest = farthest_point(side_.other, -n);
     const double depth =
         side_.other.shape->margin() + cover_.own().margin - facet.height(cover_.frame().place(farthest));
     return exit_along(side_, n, depth, farthest);
@@ -139,7 +139,7 @@ class SideRule {
     const ConvexPolytope& polytope = *side_.other.shape->polytope();
     const Vec3 against = side_.other.pose.rotation() * polytope.facet_normal(facet);
     const Vec3 on_facet = side_.other.pose.apply(polytope.vertex(polytope.facet_vertices(facet)[0]));
-    const Vec3 farthest = farthest_against(side_.own, against);
+    const Vec3 farthest = farthest_point(side_.own, -against);
     const double depth = side_.other.shape->margin() + side_.own.shape->margin() + against.dot(on_facet - farthest);
     const Vec3 on_own = farthest - side_.own.shape->margin() * against;
     return {depth, -against, on_own, on_own + depth * against};
@@ -285,7 +285,7 @@ ContactManifold along_front(const PiecePair& pair) {
   set_piece(pair.b, own);
   if (own.planes.empty()) return {};
   const PiecePlane& side = own.planes[own.planes[0].normal.dot(pair.front) > 0 ? 0 : 1];
-  const Vec3 farthest = farthest_against(pair.a, side.normal);
+  const Vec3 farthest = farthest_point(pair.a, -side.normal);
   const double depth = pair.a.shape->margin() + own.margin - side.height(farthest);
   const PieceSide sides{*pair.around_b, pair.b, pair.a, true, pair.front};
   return points_along(exit_along(sides, side.normal, depth, farthest), sides, {}, own, pair.threshold,

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "compound/part_pairs.hpp"
+#include "pd/contact/farthest_point.hpp"
 #include "pd/contact/time_of_impact.hpp"
-#include "pd/depth/difference_queries.hpp"
 #include "pd/depth/directional_depth.hpp"
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/union_contact/union_piece.hpp"
@@ -45,8 +45,7 @@ constexpr std::int64_t kMostFacets = 1 << 14;
 bool is_deep_for_thin(const PiecesAnswer& answer, double radius) {
   if (answer.depth.depth < kResting * radius) return false;
   const auto thicker = [&](const PosedShape& piece) {
-    const auto extent = support_of_difference(piece, piece, answer.depth.normal);
-    return !extent || answer.depth.depth < kDeepForThin * extent.value().value;
+    return answer.depth.depth < kDeepForThin * reach_along(piece, piece, answer.depth.normal);
   };
   return !thicker(answer.a) || !thicker(answer.b);
 }

@@ -1,30 +1,8 @@
 #include "union_contact/piece_exit.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-
-#include "depth/difference/smooth_difference.hpp"
 
 namespace pd::detail {
-
-Vec3 farthest_against(const PosedShape& shape, const Vec3& n) {
-  if (const ConvexPolytope* polytope = shape.shape->polytope()) {
-    const Vec3 local = shape.pose.rotation().transpose() * n;
-    int best = 0;
-    double least = std::numeric_limits<double>::infinity();
-    for (int v = 0; v < polytope->num_vertices(); ++v) {
-      const double value = polytope->vertex(v).dot(local);
-      if (value < least) {
-        least = value;
-        best = v;
-      }
-    }
-    return shape.pose.apply(polytope->vertex(best));
-  }
-  const Mat3 rotation = shape.pose.nearest_rotation();
-  return rotation * support_point(shape.shape->core(), -(rotation.transpose() * n)) + shape.pose.translation();
-}
 
 void drop_point(ContactManifold& points, int i) {
   --points.count;

@@ -2,13 +2,11 @@
 /// Ways out for a piece of a union from the body that touches it, along a given direction, and their contact points.
 #pragma once
 
+#include "pd/contact/farthest_point.hpp"
 #include "pd/contact/manifold.hpp"
 #include "union_contact/cover.hpp"
 
 namespace pd::detail {
-
-/// Least <x, n> over a core.
-[[nodiscard]] Vec3 farthest_against(const PosedShape& shape, const Vec3& n);
 
 /// A way out for the piece's side of a pair: along a facet of the piece or against one of the other body.
 struct PieceExit {

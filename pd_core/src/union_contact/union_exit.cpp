@@ -6,10 +6,10 @@
 
 #include "compound/part_pairs.hpp"
 #include "compound/union_boundary.hpp"
+#include "pd/contact/farthest_point.hpp"
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/depth/scratch.hpp"
 #include "pd/union_contact/union_piece.hpp"
-#include "union_contact/piece_exit.hpp"
 
 namespace pd {
 
@@ -22,7 +22,7 @@ std::optional<ConvexShape> inner_polytope(const ConvexShape& shape) {
   const PosedShape at_home{&shape, Pose()};
   for (int i = 0; i < 27; ++i) {
     const Vec3 way(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
-    if (!way.isZero()) points.push_back(detail::farthest_against(at_home, way.normalized()));
+    if (!way.isZero()) points.push_back(farthest_point(at_home, -way.normalized()));
   }
   auto hull = ConvexPolytope::from_points(points);
   if (!hull) return std::nullopt;
