@@ -215,7 +215,7 @@ struct HoveringLink {
 class IdleLink : public testing::TestWithParam<Surface> {};
 
 TEST_P(IdleLink, HasPointsWhereItMayTouchInTheStep) {
-  HoveringLink idle(GetParam(), btScalar(0.004), 0);
+  HoveringLink idle(GetParam(), btScalar(0.001), 0);
   idle.step(1);
   EXPECT_EQ(points_of(idle.dispatcher), 0);
   HoveringLink coming(GetParam(), btScalar(0.004), -1);
@@ -231,30 +231,119 @@ TEST_P(IdleLink, HasPointsWhereItMayTouchInTheStep) {
   EXPECT_EQ(points_of(falling.dispatcher), 4) << "it rests";
 }
 
-/// Bullet's sweeps over a multibody's rows, which begin at zero in every step, converge soon if the first two points
-/// hold the link by themselves.
-TEST_P(IdleLink, BeginsWithTheDeepestPointAndTheOneFarthestFromIt) {
+/// Bullet's sweeps over a multibody's rows, which begin at zero in every step, converge soon if they begin where most
+/// of the load is.
+TEST_P(IdleLink, BeginsWithThePointThatCarriedMostAndItsNeighbour) {
   HoveringLink link(GetParam(), btScalar(0.004), 0);
   link.body.setBaseOmega(btVector3(btScalar(0.3), 0, btScalar(0.2)));
-  int seen = 0;
+  struct Load {
+    btVector3 place;
+    btScalar impulse;
+  };
+  std::vector<Load> before;
+  int seen = 0, carried = 0;
   for (int i = 0; i < 120; ++i) {
     link.step(1);
+    std::vector<Load> now;
     for (int k = 0; k < link.dispatcher.getNumManifolds(); ++k) {
       const btPersistentManifold& manifold = *link.dispatcher.getManifoldByIndexInternal(k);
+      const auto place = [&](int j) { return manifold.getContactPoint(j).m_localPointA; };
+      for (int j = 0; j < manifold.getNumContacts(); ++j) {
+        now.push_back({place(j), manifold.getContactPoint(j).m_appliedImpulse});
+      }
       if (manifold.getNumContacts() < 4) continue;
       ++seen;
-      const auto gap = [&](int j) {
-        return (manifold.getContactPoint(j).m_localPointA - manifold.getContactPoint(0).m_localPointA).length();
-      };
-      const btScalar noise = btScalar(1e-6);
-      for (int j = 1; j < 4; ++j) {
-        EXPECT_LE(manifold.getContactPoint(0).getDistance(), manifold.getContactPoint(j).getDistance() + noise) << i;
-        EXPECT_GE(gap(1), btScalar(0.99) * gap(j)) << i;
-      }
-      EXPECT_LE(gap(2), btScalar(1.01) * gap(3)) << i;
+      const auto gap = [&](int j) { return (place(j) - place(0)).length(); };
+      EXPECT_LE(gap(1), btScalar(1.01) * std::min(gap(2), gap(3))) << i;
+      EXPECT_GE(gap(2), btScalar(0.99) * gap(3)) << i;
+      if (before.size() != 4) continue;
+      const auto most = std::max_element(before.begin(), before.end(),
+                                         [](const Load& x, const Load& y) { return x.impulse < y.impulse; });
+      if (!(most->impulse > 0)) continue;
+      ++carried;
+      const auto first = std::min_element(before.begin(), before.end(), [&](const Load& x, const Load& y) {
+        return x.place.distance2(place(0)) < y.place.distance2(place(0));
+      });
+      EXPECT_GE(first->impulse, btScalar(0.5) * most->impulse) << i << ", where the trend is followed";
     }
+    before = now;
   }
   EXPECT_GT(seen, 60);
+  EXPECT_GT(carried, 40);
+}
+
+/// Ten dominoes of 3 x 5 x 15 cm side by side on a table, each the base of a multibody, in a world as PyBullet sets it
+/// up.
+struct Dominoes {
+  explicit Dominoes(bool ours) {
+    if (ours) install(world, solver);
+    world.setGravity(btVector3(0, 0, -10));
+    btContactSolverInfo& info = world.getSolverInfo();
+    info.m_numIterations = 50;
+    info.m_leastSquaresResidualThreshold = btScalar(1e-7);
+    info.m_minimumSolverBatchSize = 0;
+    info.m_erp2 = btScalar(0.08);
+    info.m_frictionERP = btScalar(0.2);
+    info.m_linearSlop = btScalar(1e-5);
+    info.m_warmstartingFactor = btScalar(0.1);
+    info.m_reportSolverAnalytics = 1;
+    table.setCollisionShape(&top);
+    table.setWorldTransform(btTransform(btQuaternion::getIdentity(), btVector3(0, 0, -5)));
+    world.addCollisionObject(&table, 2, 1);
+    const btTransform place = btTransform::getIdentity();
+    stone.addChildShape(place, &box);
+    btVector3 inertia;
+    stone.calculateLocalInertia(btScalar(0.05), inertia);
+    for (int i = 0; i < 10; ++i) {
+      auto& body = *bodies.emplace_back(std::make_unique<btMultiBody>(0, btScalar(0.05), inertia, false, false));
+      body.finalizeMultiDof();
+      const btVector3 at(0, btScalar(0.05) * static_cast<btScalar>(i), btScalar(0.075));
+      body.setBaseWorldTransform(btTransform(btQuaternion::getIdentity(), at));
+      body.setCanSleep(false);
+      auto& collider = *colliders.emplace_back(std::make_unique<btMultiBodyLinkCollider>(&body, -1));
+      collider.setCollisionShape(&stone);
+      collider.setFriction(btScalar(0.5));
+      collider.setWorldTransform(body.getBaseWorldTransform());
+      body.setBaseCollider(&collider);
+      world.addCollisionObject(&collider, 1, 3);
+      world.addMultiBody(&body);
+    }
+  }
+  ~Dominoes() {
+    for (const auto& body : bodies) world.removeMultiBody(body.get());
+    for (const auto& collider : colliders) world.removeCollisionObject(collider.get());
+    world.removeCollisionObject(&table);
+  }
+  int sweeps(int steps) {
+    int sweeps = 0;
+    for (int i = 0; i < steps; ++i) {
+      world.stepSimulation(btScalar(1) / 240, 0);
+      btAlignedObjectArray<btSolverAnalyticsData> islands;
+      world.getAnalyticsData(islands);
+      for (int k = 0; k < islands.size(); ++k) sweeps += islands[k].m_numIterationsUsed;
+    }
+    return sweeps;
+  }
+
+  BulletPenetrationDepthSolver solver;
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher{&configuration};
+  btDbvtBroadphase broadphase;
+  btMultiBodyConstraintSolver rows;
+  btMultiBodyDynamicsWorld world{&dispatcher, &broadphase, &rows, &configuration};
+  btBoxShape top{btVector3(5, 5, 5)};
+  btBoxShape box{btVector3(btScalar(0.015), btScalar(0.025), btScalar(0.075))};
+  btCompoundShape stone;
+  btCollisionObject table;
+  std::vector<std::unique_ptr<btMultiBody>> bodies;
+  std::vector<std::unique_ptr<btMultiBodyLinkCollider>> colliders;
+};
+
+TEST(LinksOrder, DominoesSideBySideTakeHardlyMoreSweepsThanBullets) {
+  Dominoes ours(true), bullets(false);
+  const int ours_took = ours.sweeps(480), bullets_took = bullets.sweeps(480);
+  EXPECT_LE(ours_took, 1.15 * bullets_took);
+  EXPECT_EQ(points_of(ours.dispatcher), 76) << "four for each domino and for each two neighbours";
 }
 
 std::string surface_name(const testing::TestParamInfo<Surface>& instance) {

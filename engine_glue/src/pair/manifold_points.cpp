@@ -273,35 +273,47 @@ class PointsLeft : public PointSurroundings {
 
 namespace {
 
-/// Puts the points of a multibody's link into an order in which the sweeps converge soon: the deepest, the one farthest
-/// from it, and of the others the nearest. A multibody's rows begin at zero in every step, and each sweep over them is
-/// dear. Where the first two points lie side by side, the second takes back much of what the first one stopped.
+/// Returns the number of the point from which the sweeps over a link's points shall begin: the one that carried most in
+/// the last step, or the deepest one if none carried anything.
+int first_point_of_link(const btPersistentManifold& manifold) {
+  constexpr btScalar kSameDepth = 0x1p-16F;  ///< of the breaking threshold
+  const btScalar same_depth = kSameDepth * manifold.getContactBreakingThreshold();
+  int most = 0, deepest = 0;
+  for (int i = 1; i < manifold.getNumContacts(); ++i) {
+    const btManifoldPoint& point = manifold.getContactPoint(i);
+    if (point.m_appliedImpulse > manifold.getContactPoint(most).m_appliedImpulse) most = i;
+    if (point.getDistance() < manifold.getContactPoint(deepest).getDistance() - same_depth) deepest = i;
+  }
+  return manifold.getContactPoint(most).m_appliedImpulse > 0 ? most : deepest;
+}
+
+/// Puts the points of a multibody's link into an order in which the sweeps converge soon: from the one that carried
+/// most around the face, along its shorter side first, and around a square in one sense. A multibody's rows begin at
+/// zero in every step, and each sweep over them is dear. Begun where most of the load is, the first sweep ends near the
+/// solution, and the order lasts from step to step.
 void order_points_of_links(btPersistentManifold& manifold, PairMemory& memory) {
   const int count = manifold.getNumContacts();
-  if (count < 3 || !(is_link(*manifold.getBody0()) || is_link(*manifold.getBody1()))) return;
-  constexpr btScalar kSameDepth = 0x1p-16F;  ///< of the breaking threshold
+  if (count < 2 || !(is_link(*manifold.getBody0()) || is_link(*manifold.getBody1()))) return;
   constexpr btScalar kSameGap = btScalar(1 - 0x1p-10);
   const auto exchange = [&](int i, int k) {
     if (i == k) return;
     std::swap(manifold.getContactPoint(i), manifold.getContactPoint(k));
     std::swap(memory.points[static_cast<std::size_t>(i)], memory.points[static_cast<std::size_t>(k)]);
   };
-  const btScalar same_depth = kSameDepth * manifold.getContactBreakingThreshold();
-  int deepest = 0;
-  for (int i = 1; i < count; ++i) {
-    const btScalar least = manifold.getContactPoint(deepest).getDistance();
-    if (manifold.getContactPoint(i).getDistance() < least - same_depth) deepest = i;
-  }
-  exchange(0, deepest);
-  const auto gap = [&](int i) {
-    return (manifold.getContactPoint(i).m_localPointA - manifold.getContactPoint(0).m_localPointA).length2();
+  exchange(0, first_point_of_link(manifold));
+  const btManifoldPoint& first = manifold.getContactPoint(0);
+  const auto way = [&](int i) { return manifold.getContactPoint(i).m_positionWorldOnB - first.m_positionWorldOnB; };
+  const auto is_before = [&](int i, int k) {
+    const btVector3 to_i = way(i), to_k = way(k);
+    if (to_i.length2() < kSameGap * to_k.length2()) return true;
+    return to_k.length2() >= kSameGap * to_i.length2() && to_i.cross(to_k).dot(first.m_normalWorldOnB) > 0;
   };
-  int farthest = 1;
+  int next = 1;
   for (int i = 2; i < count; ++i) {
-    if (kSameGap * gap(i) > gap(farthest)) farthest = i;
+    if (is_before(i, next)) next = i;
   }
-  exchange(1, farthest);
-  if (count == 4 && gap(3) < kSameGap * gap(2)) exchange(2, 3);
+  exchange(1, next);
+  if (count == 4 && way(2).length2() < kSameGap * way(3).length2()) exchange(2, 3);
 }
 
 }  // namespace

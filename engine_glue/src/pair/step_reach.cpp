@@ -13,7 +13,7 @@ namespace {
 
 /// Shares of the threshold.
 constexpr btScalar kNear = btScalar(0.25), kNearOfPieces = btScalar(0.5);
-constexpr btScalar kNearOfLinks = btScalar(1. / 16);
+constexpr btScalar kNearOfLinks = btScalar(1. / 64);
 constexpr btScalar kClosing = 2;
 /// Bodies that touch without a load are less deep in each other than this share of the breaking threshold.
 constexpr btScalar kTouching = btScalar(1e-3);

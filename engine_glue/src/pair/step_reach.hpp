@@ -8,9 +8,9 @@
 /// be stopped by another one: a column that falls as one lands box by box, so that each box's own speed counts as well.
 /// Of parts of compounds it is
 /// half the threshold: they are linked, and a chain that tautens moves faster than it did. A row of a multibody costs
-/// ten times a row of a rigid body. So of links it is a sixteenth, whatever their shapes: a point that a motor's blow
-/// brings nearer than that in one step is handed out in the next one. Points of other rigid bodies are all handed out,
-/// since looking for idle ones costs as much as they do.
+/// ten times a row of a rigid body. So of links it is a sixty-fourth, whatever their shapes: a point that a motor's
+/// blow brings nearer than that in one step is handed out in the next one. Points of other rigid bodies are all handed
+/// out, since looking for idle ones costs as much as they do.
 ///
 /// Boxes that fly together, as a block that falls, touch without a load. Their points are needed where one of them may
 /// be stopped, that is, where its own speed leads against the other.
