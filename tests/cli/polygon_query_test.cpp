@@ -107,6 +107,20 @@ TEST(PolygonQuery, MarginsSweepAndDiscsAreSweptPoints) {
   EXPECT_EQ(notched.at("depths").at(0), upper);
 }
 
+TEST(PolygonQuery, ADiscGetsAwayForGood) {
+  const std::string disc = R"({"outer":[[0,0]],"margin":1})";
+  for (const char* how : {R"("complete":"escape")", R"("complete":"straight")"}) {
+    const Json away = answer(line(kFrame, disc, R"("placements":[[4,5],[2,5],[-2,5]],)" + std::string(how)));
+    EXPECT_EQ(away.at("classes"), Json::parse(R"(["touching","overlapping","separated"])")) << away;
+    for (const auto& [k, known] : {std::pair{0, 5.0}, {1, 3.0}, {2, 0.0}}) {
+      EXPECT_LE(away.at("lowers").at(static_cast<std::size_t>(k)), known) << away;
+      EXPECT_NEAR(away.at("uppers").at(static_cast<std::size_t>(k)).get<double>(), known, 1e-6) << away;
+    }
+  }
+  const Json both = answer(line(kFrame, R"({"outer":[[0,0],[2,0],[2,2],[1,1]],"margin":1})", R"("complete":"escape")"));
+  EXPECT_EQ(both.at("error").at("where"), "complete") << both;
+}
+
 TEST(PolygonQuery, Refusals) {
   const auto refused = [](const std::string& text, const char* code, const char* where) {
     const Json reply = answer(text);

@@ -143,12 +143,104 @@ TEST(SweptDepth, LiesBetweenPolygonsInsideTheDiscAndAroundIt) {
   EXPECT_LE(wide, pd::test::planar_cases(25) / 100);  // ended at the limit of boxes
 }
 
+void expect_around(const PolygonDepth& answer, double known, double width) {
+  EXPECT_LE(answer.lower, known + 1e-12);
+  EXPECT_GE(answer.upper, known - 1e-12);
+  EXPECT_LE(answer.upper - answer.lower, width);
+}
+
+/// A disc in a room with a door in the wall on the right, which begins at x = 10; the walls are 1 thick.
+TEST(SweptDepth, ADiscLeavesARoomForGood) {
+  const auto room = [](double half_door) {
+    return Rings{{{0, 0},
+                  {11, 0},
+                  {11, 5 - half_door},
+                  {10, 5 - half_door},
+                  {10, 1},
+                  {1, 1},
+                  {1, 9},
+                  {10, 9},
+                  {10, 5 + half_door},
+                  {11, 5 + half_door},
+                  {11, 10},
+                  {0, 10}}};
+  };
+  const Polygon disc = *Polygon::at_point({0, 0});
+  for (const bool turned : {false, true}) {
+    const auto at = [&](double x, double y) { return turned ? Point2{-x, -y} : Point2{x, y}; };
+    const auto difference = [&](double half_door) {
+      const Polygon walls = made(room(half_door));
+      return *PolygonDifference::of(turned ? disc : walls, turned ? walls : disc);
+    };
+    const PlanarMargins margins = turned ? PlanarMargins{0.75, 0.25} : PlanarMargins{0, 1};
+    // The disc fits through the wider door, so that it is free, and goes straight out in front of it alone.
+    const auto wide = difference(1.1), narrow = difference(0.9);
+    EXPECT_EQ(wide.swept_depth(at(3, 3), margins, Leave::escape)->upper, 0);
+    EXPECT_EQ(wide.swept_depth(at(3, 5), margins, Leave::straight)->upper, 0);
+    EXPECT_EQ(wide.swept_depth_along(at(3, 3), at(1, 0), margins, Leave::escape)->upper, 0);
+    const PolygonDepth straight = *wide.swept_depth(at(3, 3), margins, Leave::straight);
+    EXPECT_GT(straight.lower, 1);
+    EXPECT_LE(straight.upper, 4 + 1e-9) << "through the wall on the left, or below";
+    // The narrow door holds the disc: it leaves through the wall, 3 + 1 away, or 4.5 + 1 in front of the door.
+    for (const Leave leave : {Leave::escape, Leave::straight}) {
+      const PolygonDepth out = *narrow.swept_depth(at(3, 3), margins, leave);
+      EXPECT_EQ(out.contact, PlanarContact::separated);
+      expect_around(out, 4, 1e-6);
+      expect_around(*narrow.swept_depth_along(at(3, 3), at(1, 0), margins, leave), 9, 1e-6);
+    }
+    // Stuck in the door: the corners are 0.9 above and below, and the centre at x = 11 + sqrt(1 - 0.81) is free.
+    const PolygonDepth door = *narrow.swept_depth(at(11, 5), margins, Leave::escape);
+    EXPECT_EQ(door.contact, PlanarContact::overlapping);
+    expect_around(door, std::sqrt(1 - 0.81), 1e-6);
+    const Point2 out = {11 + (turned ? -1 : 1) * door.translation[0], 5 + (turned ? -1 : 1) * door.translation[1]};
+    EXPECT_LE(narrow.swept_depth(at(out[0], out[1]), margins)->depth, 1e-12);
+  }
+}
+
+/// Between the ways out of Q swept by polygons inside the disc and around it.
+TEST(SweptDepth, WaysOutForGoodLieBetweenPolygonsToo) {
+  SmallPolygons next(90);
+  int wide = 0, held = 0;
+  const int cases = pd::test::planar_cases(8);
+  for (int i = 0; i < cases; ++i) {
+    const Rings p = i % 3 == 0 ? next.touching(6) : next.simple(8, 7, true), q = next.convex(4, 3);
+    const double radius = next.whole(1, 6) / 8.0;
+    const auto r = *PolygonDifference::of(made(p), made(q));
+    const auto inner = *PolygonDifference::of(made(p), made(rounded(q, radius, false)));
+    const auto outer = *PolygonDifference::of(made(p), made(rounded(q, radius, true)));
+    for (int k = 0; k < 4; ++k) {
+      const Point2 y = {next.eighths(-1, 6), next.eighths(-1, 6)};
+      const Point2 d = {double(next.whole(-3, 3)), double(next.whole(1, 3))};
+      const auto expect_between = [&](const PolygonDepth& answer, const PolygonDepth& least, const PolygonDepth& most) {
+        const std::string what = text(p) + " q " + text(q) + " r " + std::to_string(radius) + " y " +
+                                 std::to_string(y[0]) + "," + std::to_string(y[1]);
+        ASSERT_GE(answer.upper * (1 + 1e-9) + 1e-9, least.depth) << what;
+        ASSERT_LE(answer.lower * (1 - 1e-9) - 1e-9, most.depth) << what;
+        ASSERT_LE(answer.lower, answer.upper) << what;
+        wide += answer.upper - answer.lower > 1e-5 * radius ? 1 : 0;
+        held += answer.lower > 0 ? 1 : 0;
+      };
+      const PlanarMargins margins = {radius, 0};
+      expect_between(*r.swept_depth(y, margins, Leave::escape), inner.escape_depth(y), outer.escape_depth(y));
+      expect_between(*r.swept_depth(y, margins, Leave::straight), inner.straight_escape_depth(y),
+                     outer.straight_escape_depth(y));
+      expect_between(*r.swept_depth_along(y, d, margins, Leave::escape), inner.depth_along(y, d, Leave::escape),
+                     outer.depth_along(y, d, Leave::escape));
+    }
+  }
+  EXPECT_GT(held, 2 * cases);
+  EXPECT_LE(wide, cases / 8 + 1) << "passages as wide as Q";
+}
+
 TEST(SweptDepth, Refusals) {
   const auto r = *PolygonDifference::of(made({{{0, 0}, {4, 0}, {4, 4}, {3, 1}}}), made(kSquare));
   EXPECT_EQ(r.swept_depth({0, 0}, {-1, 0}).error().code, ErrorCode::bad_value);
   EXPECT_EQ(r.swept_depth({0, 0}, {0, std::nan("")}).error().where, "q.margin");
-  EXPECT_EQ(r.swept_depth({0, 0}, {1, 0}, Leave::escape).error().code, ErrorCode::unsupported);
-  EXPECT_EQ(r.swept_depth_along({0, 0}, {1, 0}, {1, 0}, Leave::escape).error().where, "complete");
+  const Polygon kite = made({{{0, 0}, {4, 0}, {4, 4}, {3, 1}}});
+  const auto kites = *PolygonDifference::of(kite, kite);
+  EXPECT_EQ(kites.swept_depth({0, 0}, {1, 0}, Leave::escape).error().code, ErrorCode::unsupported);
+  EXPECT_EQ(kites.swept_depth({0, 0}, {1, 0}, Leave::straight).error().where, "complete");
+  EXPECT_EQ(kites.swept_depth_along({0, 0}, {1, 0}, {1, 0}, Leave::escape).error().where, "complete");
   EXPECT_EQ(
       PolygonDifference::of(*Polygon::at_point({0, 0}), made(kSquare), pd::PolygonMethod::explicit_sums).error().code,
       ErrorCode::unsupported);

@@ -2,9 +2,12 @@
 /// What a PolygonDifference keeps.
 #pragma once
 
+#include <memory>
+#include <mutex>
 #include <optional>
 
 #include "planar/boundary/boundary_query.hpp"
+#include "planar/disc_bracket.hpp"
 
 namespace pd {
 
@@ -23,6 +26,10 @@ struct PolygonDifference::State {
   std::optional<detail::BoundaryCounts> given_up;  ///< of an implicit boundary that contradicted Facts 4.1 or 4.2
   detail::SumBoundary boundary;
   detail::BoundaryQuery query;
+
+  /// The polygons around R swept by a disc, made by the first question that needs them and kept for the same radius.
+  mutable std::mutex disc_mutex;
+  mutable std::shared_ptr<const detail::DiscBracket> disc;
 
   [[nodiscard]] Point2 turned(const Point2& v) const { return swapped ? Point2{-v[0], -v[1]} : v; }
   /// Fills the answer with the way from y (turned) to the nearest point of the boundary, or of its outer curve alone.

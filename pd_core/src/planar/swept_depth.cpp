@@ -93,6 +93,27 @@ class SweptDifference {
     answer.feature = feature(distance(best_));
   }
 
+  /// The polygons around R swept by the disc, in the plane of the query.
+  [[nodiscard]] Expected<std::shared_ptr<const detail::DiscBracket>> disc() const {
+    const std::lock_guard lock(s_.disc_mutex);
+    if (!s_.disc || s_.disc->radius != radius_) {
+      auto made = detail::DiscBracket::of(s_.p, s_.q, radius_, low_, high_);
+      if (!made) return made.error();
+      s_.disc = *std::move(made);
+    }
+    return s_.disc;
+  }
+
+  /// The ways out of the two polygons around R swept, as one answer.
+  void bracket(const Point2& y, const PolygonDepth& inner, const PolygonDepth& outer, PolygonDepth& answer) const {
+    answer.lower = std::min(inner.lower, outer.upper);
+    answer.upper = answer.depth = outer.upper;
+    answer.translation = s_.turned(outer.translation);
+    if (outer.upper == 0) return;
+    answer.normal = s_.turned(outer.normal);
+    answer.feature = feature(distance(sum(y, outer.translation, 1)));
+  }
+
   /// Forward to the first exit: no placement within r - distance of one can be outside.
   void first_exit(const Point2& y, const Point2& unit, PolygonDepth& answer) const {
     const double far = beyond(y, unit);
@@ -283,21 +304,25 @@ std::optional<Error> check_margins(const PlanarMargins& margins) {
   return std::nullopt;
 }
 
-Error not_convex() {
-  return {ErrorCode::unsupported,
-          "the way out for good with a margin is answered for two convex polygons; without margins for all",
-          "complete"};
-}
-
 }  // namespace
 
 Expected<PolygonDepth> PolygonDifference::swept_depth(const Point2& placement, const PlanarMargins& margins,
                                                       Leave leave) const {
   if (auto error = check_margins(margins)) return *std::move(error);
   const SweptDifference swept(*state_, margins);
-  if (leave != Leave::first_exit && !swept.convex()) return not_convex();
-  PolygonDepth answer = swept.bounded(state_->turned(placement));
-  if (answer.contact == PlanarContact::overlapping && !swept.convex()) swept.search(state_->turned(placement), answer);
+  const Point2 y = state_->turned(placement);
+  PolygonDepth answer = swept.bounded(y);
+  if (swept.convex()) return answer;
+  if (leave == Leave::first_exit) {
+    if (answer.contact == PlanarContact::overlapping) swept.search(y, answer);
+    return answer;
+  }
+  const auto disc = swept.disc();
+  if (!disc) return disc.error();
+  const auto way_out = [&](const PolygonDifference& r) {
+    return leave == Leave::straight ? r.straight_escape_depth(y) : r.escape_depth(y);
+  };
+  swept.bracket(y, way_out((*disc)->inner), way_out((*disc)->outer), answer);
   return answer;
 }
 
@@ -305,14 +330,17 @@ Expected<PolygonDepth> PolygonDifference::swept_depth_along(const Point2& placem
                                                             const PlanarMargins& margins, Leave leave) const {
   if (auto error = check_margins(margins)) return *std::move(error);
   const SweptDifference swept(*state_, margins);
-  if (leave == Leave::escape && !swept.convex()) return not_convex();
   const Point2 y = state_->turned(placement);
   PolygonDepth answer = swept.bounded(y);
   answer.depth = answer.lower = answer.upper = 0;
   answer.translation = {0, 0};
   const double size = detail::length(direction[0], direction[1]);
   const Point2 unit = state_->turned({direction[0] / size, direction[1] / size});
-  if (leave == Leave::straight) {
+  if (leave == Leave::escape && !swept.convex()) {
+    const auto disc = swept.disc();
+    if (!disc) return disc.error();
+    swept.bracket(y, (*disc)->inner.depth_along(y, unit, leave), (*disc)->outer.depth_along(y, unit, leave), answer);
+  } else if (leave == Leave::straight) {
     swept.last_exit(y, unit, answer);
   } else if (answer.contact == PlanarContact::overlapping) {
     swept.first_exit(y, unit, answer);

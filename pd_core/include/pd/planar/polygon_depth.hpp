@@ -92,11 +92,15 @@ class PolygonDifference {
   /// depth() or, for another `leave`, escape_depth() and straight_escape_depth() of P and Q, each swept by the disc of
   /// its margin. The class is exact. For convex P and Q so is the depth, as above. Else the depth is upper, and upper -
   /// lower <= 1e-6 upper unless 20,000 boxes of placements do not suffice: the bracket is certified either way.
+  /// For another `leave`, and one convex polygon, the answer lies between those of two regular polygons of 8,192 corners
+  /// in place of the disc. This bracket is certified and some 1e-6 of the margins wide. It is wider where a passage is
+  /// as wide as Q within that. The first such question makes two differences, which are kept.
   /// @return bad_value or non_finite for margins that are negative or not finite, out_of_range for a sum above 1e300;
-  /// unsupported for another `leave` than first_exit unless P and Q are convex.
+  /// unsupported for another `leave` than first_exit where neither P nor Q is convex.
   [[nodiscard]] Expected<PolygonDepth> swept_depth(const Point2& placement, const PlanarMargins& margins,
                                                    Leave leave = Leave::first_exit) const;
   /// depth_along() in the same way. The bracket is certified, some 1e-10 of the depth wide, and wider where Q grazes P.
+  /// Leave::escape is bracketed as above.
   /// @return errors as above; Leave::straight is answered for all polygons.
   [[nodiscard]] Expected<PolygonDepth> swept_depth_along(const Point2& placement, const Point2& direction,
                                                          const PlanarMargins& margins,
