@@ -68,7 +68,7 @@ TEST(LocalMinimum, NoHeightInTheConeIsLess) {
     std::vector<PointPair> points;
     const SmoothDifference difference(posed_a, posed_b, points);
     // The least one, or one that may be found from anywhere.
-    const PenetrationDepth least = penetration_depth(posed_a, posed_b, scratch, {.bracket = Bracket::certified});
+    const PenetrationDepth least = penetration_depth(posed_a, posed_b, scratch, {.bracket = Bracket::tightest});
     const Vec3 normal = i % 3 == 0 ? random.direction() : near_direction(least.normal, 0.2, random);
     DifferenceVertex corners[3];
     for (DifferenceVertex& corner : corners) corner = difference.support(near_direction(normal, 0.3, random), nullptr);
@@ -115,7 +115,7 @@ TEST(LocalMinimum, ADiscOverACorner) {
                                             Vec3(0.3, -0.2, 0.25 + std::sqrt(3.0)));
   Scratch scratch;
   const PenetrationDepth answer = penetration_depth({&cylinder, *Pose::from_quaternion({1, 0, 0, 0}, Vec3::Zero())},
-                                                    {&box, on_corner}, scratch, {.bracket = Bracket::certified});
+                                                    {&box, on_corner}, scratch, {.bracket = Bracket::tightest});
   EXPECT_EQ(answer.contact, ContactClass::overlapping);
   EXPECT_NEAR(answer.depth, 0.25, 1e-13);
   EXPECT_LE(answer.upper - answer.lower, 1e-13);
@@ -124,7 +124,7 @@ TEST(LocalMinimum, ADiscOverACorner) {
   EXPECT_LE(answer.statistics.support_calls, 14);
 }
 
-/// Halving took 18 supports in the mean and 79 at most.
+/// Only the tightest bracket needs the minimum: its foot is known. Two cylinders took twice the time without.
 TEST(LocalMinimum, SparesSearchesTheirHalving) {
   Random random(9);
   Scratch scratch;
@@ -133,12 +133,12 @@ TEST(LocalMinimum, SparesSearchesTheirHalving) {
   for (int i = 0; i < 400; ++i) {
     const double half_height = random.uniform(0.5, 1);
     const ConvexShape cylinder = *ConvexShape::cylinder(random.uniform(0.5, 1), half_height, 2);
-    const ConvexShape box =
-        *ConvexPolytope::box({random.uniform(0.5, 1), random.uniform(0.5, 1), random.uniform(0.5, 1)});
+    const double other_half_height = random.uniform(0.5, 1);
+    const ConvexShape other = *ConvexShape::cylinder(random.uniform(0.5, 1), other_half_height, 2);
     const Pose a = random.pose(Vec3::Zero());
     const Pose b = random.pose(1.4 * random.direction());
     const PenetrationDepth answer =
-        penetration_depth({&cylinder, a}, {&box, b}, scratch, {.bracket = Bracket::certified});
+        penetration_depth({&cylinder, a}, {&other, b}, scratch, {.bracket = Bracket::tightest});
     if (answer.contact != ContactClass::overlapping) continue;
     EXPECT_TRUE(answer.bracket_reached);
     ++overlapping;
@@ -146,8 +146,8 @@ TEST(LocalMinimum, SparesSearchesTheirHalving) {
     most = std::max(most, answer.statistics.support_calls);
   }
   EXPECT_GT(overlapping, 150);
-  EXPECT_LT(supports, 12 * overlapping);
-  EXPECT_LT(most, 64);
+  EXPECT_LT(supports, 45 * overlapping);
+  EXPECT_LT(most, 256);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 /// @file
-/// Spheres and capsules whose cores are apart from a box, wherever they are nearest, against the exact oracle.
+/// Spheres and capsules whose cores are apart from a box, wherever they are nearest, against the exact oracle. Next to
+/// an edge or a corner there is a closed form.
 
 #include <gtest/gtest.h>
 
@@ -50,18 +51,16 @@ Counted ask(bool segment, bool single, bool swapped) {
   return counted;
 }
 
-TEST(SlenderNearBox, FacesEdgesAndCornersInClosedForm) {
+TEST(SlenderNearBox, EdgesAndCornersInClosedForm) {
   for (const bool segment : {false, true}) {
     for (const bool single : {false, true}) {
       for (const bool swapped : {false, true}) {
         const Counted counted = ask(segment, single, swapped);
-        // The others cut the box.
-        EXPECT_GT(counted.at_once, 120);
-        EXPECT_GT(counted.on[static_cast<int>(Feature::Kind::facet)], 10);
+        // The others cut the box or lie before a face.
+        EXPECT_GT(counted.at_once, 100);
         EXPECT_GT(counted.on[static_cast<int>(Feature::Kind::edge)], 10);
         EXPECT_GT(counted.on[static_cast<int>(Feature::Kind::vertex)], 10);
-        std::printf("%d at once: %d corners, %d edges, %d faces\n", counted.at_once, counted.on[1], counted.on[2],
-                    counted.on[3]);
+        std::printf("%d at once: %d corners, %d edges\n", counted.at_once, counted.on[1], counted.on[2]);
       }
     }
   }

@@ -37,7 +37,6 @@
 #include <type_traits>
 #include <utility>
 
-#include "depth/distance/enclosing_simplex.hpp"
 #include "depth/expansion/expansion_budget.hpp"
 #include "depth/expansion/expansion_goal.hpp"
 #include "depth/expansion/initial_simplex.hpp"
@@ -67,7 +66,6 @@ class ExpandingPolytope {
   /// From scratch; `start` is a direction in which the depth is expected (zero: away from P's centre).
   ExpansionResult run(const Vec3& start, const ExpansionGoal& goal, FirstDirections first = FirstDirections::plain) {
     surface_.clear();
-    seen_ = 0;
     by_shape_ = false;
     // 1.
     Vec3 direction = start;
@@ -78,7 +76,7 @@ class ExpandingPolytope {
         length > 0x1p-40 * difference_.reach() || start.squaredNorm() > 0 ? Vec3(direction / length) : Vec3::UnitX();
     // 2.
     ExpansionResult result;
-    Probe probe{*this, result, first};
+    Probe probe{*this, result};
     Vec3 directions[4];
     const double sine = initial_cone_sine(difference_);
     if (first == FirstDirections::by_shape) by_shape_ = directions_by_shape(difference_, start, sine, directions);
@@ -116,7 +114,6 @@ class ExpandingPolytope {
   struct Probe {
     ExpandingPolytope& polytope;
     ExpansionResult& result;
-    FirstDirections first;
 
     bool add_support(const Vec3& unit) {
       return polytope.add_if_not_beyond(unit, polytope.difference_.search_support_along(unit), result);
@@ -133,33 +130,8 @@ class ExpandingPolytope {
       }
       return true;
     }
-    InitialSimplexOutcome search_around_origin() {
-      if constexpr (std::is_same_v<Difference, PolytopeDifference>) {
-        if (first == FirstDirections::by_shape) return polytope.enclose_origin(result);
-      }
-      return InitialSimplexOutcome::flat;
-    }
     bool add_both_supports(const Vec3& unit) { return add_support(unit) && add_support(-unit); }
   };
-
-  /// A tetrahedron round the origin, from the four vertices that the surface has.
-  InitialSimplexOutcome enclose_origin(ExpansionResult& result) {
-    const std::span<const DifferenceVertex, 4> start(surface_.vertices.data(), 4);
-    const EnclosingSimplex found = enclosing_simplex(difference_, start, stack_, support_calls_);
-    if (found.status == EnclosingSimplex::Status::unclear) return InitialSimplexOutcome::flat;
-    by_shape_ = true;
-    // What holds the origin closely tells little about L.
-    seen_ = difference_.coordinate_of_ends();
-    surface_.vertices.assign(found.simplex, found.simplex + found.count);
-    if (found.status == EnclosingSimplex::Status::apart) {
-      result.status = ExpansionStatus::separated;
-      result.upper = found.upper;
-      result.normal = found.normal;
-      result.separating = found.separating;
-      return InitialSimplexOutcome::separated;
-    }
-    return surface_.start_tetrahedron(flat_volume()) ? InitialSimplexOutcome::found : InitialSimplexOutcome::flat;
-  }
 
   /// Adds a support. False when its plane has the origin beyond it: the bodies are separated.
   bool add_if_not_beyond(const Vec3& unit, DifferenceVertex s, ExpansionResult& result) {
@@ -182,7 +154,7 @@ class ExpandingPolytope {
   /// Steps 3 to 9, at most `goal.max_steps` times.
   ExpansionResult grow(const ExpansionGoal& asked, ExpansionResult result) {
     ExpansionGoal goal = asked;
-    double largest = seen_;
+    double largest = 0;
     for (const DifferenceVertex& v : surface_.vertices) largest = std::max(largest, v.x.cwiseAbs().maxCoeff());
     const double error = lower_error();
     double highest = goal.loss_from;
@@ -312,7 +284,6 @@ class ExpandingPolytope {
   InnerSurface& surface_;
   std::vector<std::int32_t>& stack_;
   bool by_shape_ = false;
-  double seen_ = 0;  ///< a |coordinate| of P, before those of the surface
   std::int64_t support_calls_ = 0;
   std::int64_t facets_visited_ = 0;
 };

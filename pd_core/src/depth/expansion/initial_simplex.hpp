@@ -50,7 +50,7 @@ inline double initial_cone_sine(const SmoothDifference& /*difference*/) { return
 /// How a search begins.
 enum class FirstDirections : std::uint8_t {
   plain,    ///< whatever the bodies are like: which of equally near facets a search ends at hangs on it
-  by_shape  ///< in the frame of the bodies' moments where one is elongated, and round the origin where they fail
+  by_shape  ///< in the frame of the bodies' moments where one is elongated,
 };
 
 /// Bodies of so few vertices are through in little more time than the frame takes.
@@ -76,10 +76,9 @@ inline bool directions_by_shape(const SmoothDifference&, const Vec3&, double, Ve
 
 /// The searches for the first tetrahedron, the cheapest first. `Probe` offers `add_support`, for one direction and for
 /// four, and `add_both_supports`; each adds vertices to the surface and says false where a support shows the bodies
-/// separated. Its `search_around_origin` begins from four vertices that are there and puts others in their place.
+/// separated.
 ///
-/// Most pairs are done after the first four supports; at most 20 are asked for, and what the way round the origin
-/// takes.
+/// Most pairs are done after the first four supports; at most 20 are asked for.
 template <class Probe>
 class InitialSimplex {
  public:
@@ -93,8 +92,6 @@ class InitialSimplex {
   Outcome find(const Vec3 (&directions)[4], const Vec3& direction, double sine) {
     if (!probe_.add_support(directions)) return Outcome::separated;
     if (surface_.start_tetrahedron(flat_)) return Outcome::found;
-    const Outcome around = probe_.search_around_origin();
-    if (around != Outcome::flat) return around;
     return search_farther(direction, sine);
   }
 

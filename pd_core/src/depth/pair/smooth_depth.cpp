@@ -13,8 +13,6 @@
 #include "depth/distance/settled_foot.hpp"
 #include "depth/expansion/cached_surface.hpp"
 #include "depth/features/inscribed_balls.hpp"
-#include "depth/features/point_off_core.hpp"
-#include "depth/features/revolution_depth.hpp"
 #include "depth/features/same_core.hpp"
 #include "depth/features/thinnest_axis.hpp"
 #include "depth/pair/contact_facets.hpp"
@@ -80,9 +78,7 @@ class SmoothQuery {
     out_.method = Method::expansion;
     if (for_contact_ && curved_on_facet(a_, b_, difference_, width_, warm_, out_)) return;
     buffers_.surface.clear();
-    if (!solve_apart_from_memory() && !solve_by_inscribed_balls() && !solve_by_touching_places()) {
-      solve_by_expansion();
-    }
+    if (!solve_apart_from_memory() && !solve_by_inscribed_balls()) solve_by_expansion();
     const double lower = out_.contact == ContactClass::overlapping ? out_.lower : out_.distance_lower;
     const double upper = out_.contact == ContactClass::overlapping ? out_.upper : out_.distance_upper;
     out_.bracket_reached = upper <= (1 + delta_) * lower * (1 + 0x1p-48);
@@ -130,7 +126,12 @@ class SmoothQuery {
     // Relative to the whole cores.
     goal.width = std::max(width_, kShareOfDelta * delta_ * taken_out_);
     goal.touching_width = 0.5 * width_;
-    return nearest_smooth_face(a_, b_, difference_, goal, for_contact_, buffers_, out_.statistics);
+    return nearest_smooth_face(a_, b_, difference_, goal, purpose(), buffers_, out_.statistics);
+  }
+
+  [[nodiscard]] FacePurpose purpose() const {
+    if (for_contact_) return FacePurpose::contact;
+    return rough_witnesses_ ? FacePurpose::bracket : FacePurpose::foot;
   }
 
   /// Largest |coordinate| that the search has seen: L from below.
@@ -153,30 +154,6 @@ class SmoothQuery {
                        foot_between({normal, balls->upper}, balls->on_a + difference_.taken_out(0) * normal,
                                     balls->on_b - difference_.taken_out(1) * normal));
     return true;
-  }
-
-  bool solve_by_touching_places() {
-    const std::optional<RevolutionDepth> found =
-        revolution_depth(a_, b_, difference_, delta_, std::max(width_, 0.25 * kAbsolute * difference_.reach()),
-                         out_.statistics.support_calls);
-    if (!found) return false;
-    if (found->is_apart) {
-      solve_apart({.upper = 0, .normal = found->normal});
-      return true;
-    }
-    buffers_.surface.vertices.push_back({found->touched, -1, -1});
-    answer_overlapping(found->lower, foot_at({found->normal, found->upper}, found->on_a));
-    return true;
-  }
-
-  /// A point of A's core, and how far it and its partner on B lie outside.
-  [[nodiscard]] Foot foot_at(const WayOut& plane, const Vec3& on_a) const {
-    const Vec3 on_b = on_a + plane.upper * plane.normal - difference_.offset();
-    const Vec3 local_a = difference_.rotation_of(0).transpose() * on_a;
-    const Vec3 local_b = difference_.rotation_of(1).transpose() * on_b;
-    return {plane.normal, plane.upper, on_a,
-            std::max(std::visit(PointOffCore{local_a}, difference_.core_of(0)),
-                     std::visit(PointOffCore{local_b}, difference_.core_of(1)))};
   }
 
   /// Where the cores were apart, the points round the nearest one of P are there still, or nearly. False, and nothing

@@ -41,12 +41,13 @@ bool is_reached(const ExpansionGoal& goal, ExpansionResult& found) {
 
 class SmoothFaceSearch {
  public:
-  SmoothFaceSearch(const PosedShape& a, const PosedShape& b, const SmoothDifference& difference, bool for_contact,
+  SmoothFaceSearch(const PosedShape& a, const PosedShape& b, const SmoothDifference& difference, FacePurpose purpose,
                    ScratchBuffers& buffers)
       : a_(a),
         b_(b),
         difference_(difference),
-        for_contact_(for_contact),
+        for_contact_(purpose == FacePurpose::contact),
+        wants_foot_(purpose == FacePurpose::foot),
         buffers_(buffers),
         expansion_(difference, buffers.surface, buffers.stack) {}
 
@@ -61,8 +62,8 @@ class SmoothFaceSearch {
     }
     goal.max_loss = 4 * difference_.point_error();
     ExpansionResult& best = nearest.found;
-    best = for_contact_ ? expansion_.run(Vec3::Zero(), goal)
-                        : run_around_minimum(Vec3::Zero(), goal, kMostOthers, nearest);
+    best =
+        wants_foot_ ? run_around_minimum(Vec3::Zero(), goal, kMostOthers, nearest) : expansion_.run(Vec3::Zero(), goal);
     if (best.status == ExpansionStatus::over_budget) tighten_upper(best);
     // What is flat has no surface to go on from.
     const bool started = best.face >= 0 && std::isfinite(best.lower);
@@ -195,6 +196,7 @@ class SmoothFaceSearch {
   const PosedShape& b_;
   const SmoothDifference& difference_;
   bool for_contact_;
+  bool wants_foot_;
   ScratchBuffers& buffers_;
   ExpandingPolytope<SmoothDifference> expansion_;
 };
@@ -202,8 +204,9 @@ class SmoothFaceSearch {
 }  // namespace
 
 SmoothFace nearest_smooth_face(const PosedShape& a, const PosedShape& b, const SmoothDifference& difference,
-                               ExpansionGoal goal, bool for_contact, ScratchBuffers& buffers, Statistics& statistics) {
-  return SmoothFaceSearch(a, b, difference, for_contact, buffers).run(goal, statistics);
+                               ExpansionGoal goal, FacePurpose purpose, ScratchBuffers& buffers,
+                               Statistics& statistics) {
+  return SmoothFaceSearch(a, b, difference, purpose, buffers).run(goal, statistics);
 }
 
 }  // namespace pd::detail

@@ -2,6 +2,7 @@
 /// The face of a curved P that is nearest to the origin, from inside.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "depth/difference/smooth_difference.hpp"
@@ -23,12 +24,18 @@ struct SmoothFace {
   const std::vector<DifferenceVertex>* searched = nullptr;  ///< all points that its search met, in `buffers`
 };
 
+enum class FacePurpose : std::uint8_t {
+  contact,  ///< within the budget of contacts (contact_budget.hpp), with the bracket that it leaves
+  bracket,
+  foot  ///< the origin's foot on the face as well, by the local minimum next to the face
+};
+
 /// By an expanding polytope in doubles; where rounding folds its surface, from another start, and at last by an exact
 /// hull of the points.
 ///
-/// @param goal         how near; the steps and losses that it allows are set here
-/// @param for_contact  within the budget of contacts (contact_budget.hpp), with the bracket that it leaves
+/// @param goal  how near; the steps and losses that it allows are set here
 SmoothFace nearest_smooth_face(const PosedShape& a, const PosedShape& b, const SmoothDifference& difference,
-                               ExpansionGoal goal, bool for_contact, ScratchBuffers& buffers, Statistics& statistics);
+                               ExpansionGoal goal, FacePurpose purpose, ScratchBuffers& buffers,
+                               Statistics& statistics);
 
 }  // namespace pd::detail

@@ -1,9 +1,6 @@
 /// @file
-/// Cylinders and cones in polytopes by all places where a ball inside P can touch P: against a sweep of directions,
-/// with bodies that lie flush on each other, and points that lie in both bodies.
-
-#include "depth/features/revolution_depth.hpp"
-
+/// Cylinders and cones in polytopes: against a sweep of directions, with bodies that lie flush on each other, and points
+/// that lie in both bodies.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,8 +17,6 @@ namespace pd::detail {
 namespace {
 
 using scenes::Random;
-
-constexpr double kSlack = 1e-11;
 
 /// Thin and flat ones among them.
 double random_size(Random& random) {
@@ -66,18 +61,14 @@ double outside(const PosedShape& body, const Vec3& point) {
   return std::max(across.norm() - radius, -p[axis] - cone->half_height);
 }
 
-bool is_by_places(const PenetrationDepth& answer) { return answer.statistics.support_calls == 1; }
-
 /// What every answer promises, of P's own height in long double, and how near to both bodies the points are.
 void check_answer(const PosedShape& a, const PosedShape& b, const PenetrationDepth& answer, const std::string& what) {
   ASSERT_EQ(answer.contact, ContactClass::overlapping) << what;
   ASSERT_TRUE(answer.bracket_reached) << what;
   ASSERT_GE(answer.upper, oracle::difference_support(a, b, answer.normal)) << what;
   ASSERT_LE(answer.lower, oracle::sweep_directions(a, b, 150, 3).least) << what;
-  if (!is_by_places(answer)) return;
-  ASSERT_LE(std::min(outside(a, answer.witness_a), outside(b, answer.witness_b)), kSlack) << what;
   ASSERT_LE(outside(a, answer.witness_a), 1e-4) << what;
-  ASSERT_LE(outside(b, answer.witness_b), 1e-4) << what;  // what is left of slopes
+  ASSERT_LE(outside(b, answer.witness_b), 1e-4) << what;
   ASSERT_LE((answer.witness_b - answer.witness_a - answer.translation).norm(), 1e-14) << what;
 }
 
@@ -92,19 +83,18 @@ class Questions {
     const std::string pair = "pair " + std::to_string(asked++);
     if (answer.contact != ContactClass::overlapping) return false;
     ++overlapping;
-    by_places += is_by_places(answer) ? 1 : 0;
     check_answer(a, b, answer, pair);
     return true;
   }
 
   PosedShape a{nullptr, Pose()}, b{nullptr, Pose()};
-  int asked = 0, overlapping = 0, by_places = 0;
+  int asked = 0, overlapping = 0;
 
  private:
   Scratch scratch_;
 };
 
-TEST(RevolutionDepth, IsThatOfASweepOfDirections) {
+TEST(RevolutionInPolytope, IsThatOfASweepOfDirections) {
   Random random(3);
   Questions questions;
   for (int i = 0; i < 1500; ++i) {
@@ -118,13 +108,11 @@ TEST(RevolutionDepth, IsThatOfASweepOfDirections) {
     }
   }
   EXPECT_GT(questions.overlapping, 600);
-  // The others' foot on an edge's arc is settled by further supports, so that witnesses lie on both bodies.
-  EXPECT_GT(questions.by_places, questions.overlapping * 95 / 100);
 }
 
 /// Along each other's axes, in the middle of each other or moved along one, two or three axes: facets, discs, edges and
 /// lines of mantles lie flush on each other.
-TEST(RevolutionDepth, OfBodiesThatLieFlush) {
+TEST(RevolutionInPolytope, OfBodiesThatLieFlush) {
   Random random(5);
   Questions questions;
   for (int i = 0; i < 1500; ++i) {
@@ -144,10 +132,9 @@ TEST(RevolutionDepth, OfBodiesThatLieFlush) {
     ASSERT_FALSE(HasFatalFailure());
   }
   EXPECT_GT(questions.overlapping, 600);
-  EXPECT_GT(questions.by_places, questions.overlapping * 9 / 10);
 }
 
-TEST(RevolutionDepth, ACornerNextToTheMantle) {
+TEST(RevolutionInPolytope, ACornerNextToTheMantle) {
   const ConvexShape cylinder = *ConvexShape::cylinder(1, 2, 2);
   const ConvexShape box = *ConvexPolytope::box({1, 1, 0.5});
   // An edge of the box runs along the axis, a corner of its outline a tenth inside the mantle.
@@ -157,9 +144,8 @@ TEST(RevolutionDepth, ACornerNextToTheMantle) {
   const PenetrationDepth answer = penetration_depth({&cylinder, *Pose::from_quaternion({1, 0, 0, 0}, Vec3::Zero())},
                                                     {&box, on_edge}, scratch, {.bracket = Bracket::certified});
   EXPECT_EQ(answer.contact, ContactClass::overlapping);
-  EXPECT_NEAR(answer.depth, 0.1, 1e-13);
-  EXPECT_NEAR(std::abs(answer.normal.x()), 1, 1e-12);
-  EXPECT_TRUE(is_by_places(answer));
+  EXPECT_NEAR(answer.depth, 0.1, 1e-7);
+  EXPECT_NEAR(std::abs(answer.normal.x()), 1, 1e-6);
 }
 
 }  // namespace
