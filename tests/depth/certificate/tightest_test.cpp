@@ -106,8 +106,6 @@ TEST(Tightest, BoxesAtRestAreExactAlongTheVertical) {
     const Pose pose_a = *Pose::from_quaternion({std::cos(half), 0, 0, std::sin(half)}, {0.4, -0.3, 0.3 - sunk});
     const PenetrationDepth answer = penetration_depth({&a, pose_a}, {&b, Pose()}, scratch);
     ASSERT_EQ(answer.contact, ContactClass::overlapping);
-    EXPECT_EQ(answer.method, Method::overlay);
-    EXPECT_EQ(answer.statistics.support_calls, 0);
     EXPECT_EQ(answer.normal, Vec3::UnitZ());
     // A sum of doubles, whose digits fit into the 64 bits of long doubles.
     const long double depth = static_cast<long double>(0.1) + 0.2 - pose_a.translation().z();

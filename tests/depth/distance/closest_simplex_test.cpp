@@ -1,17 +1,13 @@
 /// @file
-/// The simplex that exact searches begin with is the one that they end with, to double-double.
-
-#include "depth/distance/closest_simplex.hpp"
+/// The simplex that exact searches begin with is the one that they end with, to double-double; and what they end with
+/// is nearest to the origin, as every vertex of P shows.
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <limits>
-#include <numeric>
-#include <vector>
+#include <array>
 
 #include "depth/distance/gjk_exact.hpp"
-#include "depth/distance/simplex_double_double.hpp"
+#include "depth/distance/simplex_of_numbers.hpp"
 #include "numeric/root_sum.hpp"
 #include "oracle/judged_pair.hpp"
 
@@ -25,21 +21,33 @@ using scenes::PairFamily;
 
 constexpr VertexPair kAny{0, 0};
 
-/// Of the simplex, scaled as the pair is. Added one by one a vertex may be dropped that is wanted later: in any order.
+/// Of the simplex, scaled as the pair is.
 double distance_of(const PosedPair& pair, const detail::ClosestSimplex& found) {
-  std::vector<std::size_t> order(static_cast<std::size_t>(found.count));
-  std::iota(order.begin(), order.end(), 0);
-  double least = std::numeric_limits<double>::infinity();
-  do {
-    const auto place = [&](std::size_t i) {
-      const VertexPair& v = found.vertices[order[i]];
-      return pair.approximate_dd(detail::PairVector::point(v.a, v.b));
-    };
-    detail::SimplexDoubleDouble<std::size_t> simplex(0, place(0));
-    for (std::size_t i = 1; i < order.size() && simplex.closest().count < 4; ++i) simplex.add(i, place(i));
-    least = std::min(least, to_double(sqrt(simplex.closest().squared)));
-  } while (std::next_permutation(order.begin(), order.end()));
-  return least;
+  using Simplex = detail::SimplexOfNumbers<detail::DoubleDouble, VertexPair>;
+  std::array<Simplex::Corner, 4> corners;
+  const auto count = static_cast<std::size_t>(found.count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const VertexPair& v = found.vertices[i];
+    corners[i] = {v, pair.approximate_dd(detail::PairVector::point(v.a, v.b))};
+  }
+  Simplex simplex(corners[0]);
+  simplex.take(std::span(corners).first(count));
+  return to_double(sqrt(simplex.nearest().squared / simplex.nearest().scale));
+}
+
+/// All vertices of P lie behind the plane across the nearest point, and those of its simplex on it.
+void expect_nearest(const PosedPair& pair, const detail::ExactClosestPoint& exact) {
+  const auto place = [&](int a, int b) { return pair.exact(detail::PairVector::point(a, b)); };
+  const detail::Dyadic3 corner = place(exact.simplex[0].a, exact.simplex[0].b);
+  for (int i = 1; i < exact.count; ++i) {
+    const VertexPair& v = exact.simplex[static_cast<std::size_t>(i)];
+    EXPECT_EQ(dot(exact.point, place(v.a, v.b) - corner).sign(), 0);
+  }
+  for (int a = 0; a < pair.a().num_vertices(); ++a) {
+    for (int b = 0; b < pair.b().num_vertices(); ++b) {
+      ASSERT_GE(dot(exact.point, place(a, b) - corner).sign(), 0) << a << " " << b;
+    }
+  }
 }
 
 TEST(ClosestSimplex, IsAsFarAsTheBodiesAre) {
@@ -62,6 +70,7 @@ TEST(ClosestSimplex, IsAsFarAsTheBodiesAre) {
           continue;
         }
         ++apart;
+        if (n <= 16) expect_nearest(pair, exact);
         const detail::DoubleDouble length = sqrt(to_double_double(dot(exact.point, exact.point)));
         const double expected = to_double(length / to_double_double(exact.scale)) * pair.inwards();
         EXPECT_NEAR(distance_of(pair, found), expected, error + 0x1p-50 * expected);

@@ -7,5 +7,4 @@
 #define nearest_on_simplex nearest_on_simplex_baseline
 #define support_of_few support_of_few_baseline
 #define add_to_face add_to_face_baseline
-#define found_on found_on_baseline
 #include "depth/distance/nearest_of_few.cpp"

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "depth/distance/gjk.hpp"
+#include "depth/distance/lane_simplex.hpp"
 #include "numeric/double_double_lanes.hpp"
 #include "numeric/vector_double_double.hpp"
 
@@ -164,25 +163,20 @@ CorePoints witness_points_overlapping(const PosedPair& pair, const SupportFaces&
   const auto edge_a = [&](std::int32_t v) { return Vec3(-pair.approximate(PairVector::edge_a(on_a.front(), v))); };
   const FaceEdges edges_a(on_a, edge_a), edges_b(on_b, edge_b);
 
-  DifferenceVertex simplex[4] = {difference(on_a.front(), on_b.front())};
-  double weights[4] = {1, 0, 0, 0};
-  int count = 1;
-  double best = std::numeric_limits<double>::infinity();
-  for (Vec3 point = simplex[0].x; point.squaredNorm() < best;) {
-    best = point.squaredNorm();
-    DifferenceVertex next[4];
-    double next_weights[4];
-    int next_count = count;
-    std::copy(simplex, simplex + count, next);
-    next[next_count++] = difference(edges_a.farthest(-point, edge_a), edges_b.farthest(-point, edge_b));
-    point = closest_point_on_simplex(next, next_count, next_weights, true);
-    if (!(point.squaredNorm() < best)) break;
-    count = next_count;
-    std::copy(next, next + count, simplex);
-    std::copy(next_weights, next_weights + count, weights);
+  LaneSimplex simplex;
+  simplex.add(difference(on_a.front(), on_b.front()));
+  // All of it lies in a plane through the origin, which a triangle holds for certain.
+  while (simplex.count() < 3 && simplex.point().squaredNorm() > 0) {
+    const Vec3 toward = simplex.toward();
+    if (!simplex.add(difference(edges_a.farthest(toward, edge_a), edges_b.farthest(toward, edge_b)))) break;
   }
   VertexPair ids[3];
-  for (int i = 0; i < count; ++i) ids[i] = {simplex[i].a, simplex[i].b};
+  double weights[3];
+  const int count = simplex.count();
+  for (int k = 0; k < count; ++k) {
+    ids[k] = {simplex.corner(k).a, simplex.corner(k).b};
+    weights[k] = simplex.weight(k);
+  }
   const Vec3 a = point_of_a(pair, ids, weights, count, vector_of(negated_a(ids[0].a)));
   return {a, a + translation};
 }

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "depth/distance/nearest_of_few.hpp"
-#include "depth/distance/simplex_lanes.hpp"
 
 namespace pd::detail {
 
@@ -14,10 +13,6 @@ namespace {
 /// their body's radius, two compared products by 3u each, the offset by u, the sum of a vertex of P by 2u, its product
 /// by 3u and the normal's length by 4u.
 constexpr double kScannedPlaneError = 24 * kUnitRoundoff;
-
-/// Of a search over many vertices: below it single precision cannot tell.
-constexpr double kSeenGap = 0x1p-20;
-constexpr int kMostOfMany = 64;
 
 FewVerticesInFrames in_frames(const PolytopeDifference& difference) {
   return {arrays_of(difference.a()), arrays_of(difference.b()), difference.rotation_a().data(),
@@ -73,39 +68,6 @@ ClosestPoint closest_of_few(const PolytopeDifference& difference, std::span<cons
   support_calls += found.supports;
   return closest_point(difference, found, {distance_errors(difference).upper, kScannedPlaneError * difference.reach()},
                        relative, width);
-}
-
-ClosestPoint closest_of_many(const PolytopeDifference& difference, std::span<const DifferenceVertex> start,
-                             double relative, const BracketWidth& width, std::vector<std::int32_t>& stack,
-                             std::int64_t& support_calls) {
-  NearestLaneFace face{};
-  for (const DifferenceVertex& v : start) {
-    if (!add_to_face(face, {v.x.x(), v.x.y(), v.x.z(), v.a, v.b})) return {};
-  }
-  const auto is_corner = [&](const DifferenceVertex& s) {
-    return std::any_of(face.corners, face.corners + face.count,
-                       [&](const LanePoint& corner) { return corner.a == s.a && corner.b == s.b; });
-  };
-  for (int step = 0; step < kMostOfMany; ++step) {
-    const Vec3 toward(face.toward.x, face.toward.y, face.toward.z);
-    DifferenceVertex s = difference.search_support_along(toward);
-    ++support_calls;
-    double height = -s.x.dot(toward);
-    // What single precision sees no farther out may be the end.
-    if (face.length - height <= kSeenGap * difference.reach() || is_corner(s)) {
-      s = difference.certified_support(toward, s, stack);
-      height = -s.x.dot(toward);
-      if (face.length - height <= kSearchGap * difference.reach() || is_corner(s)) {
-        NearestOfFew found = found_on(face);
-        found.height = height;
-        return closest_point(difference, found, distance_errors(difference), relative, width);
-      }
-    }
-    const double length = face.length;
-    if (!add_to_face(face, {s.x.x(), s.x.y(), s.x.z(), s.a, s.b})) return {};
-    if (!(face.length < length)) return {};
-  }
-  return {};
 }
 
 std::optional<PlaneOfFew> plane_of_few(const PolytopeDifference& difference, const DifferenceVertex& first,

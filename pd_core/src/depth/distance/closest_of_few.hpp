@@ -11,9 +11,6 @@
 
 namespace pd::detail {
 
-/// Of a nearest point behind its plane, in units of the reach: nothing but rounding lies between them.
-inline constexpr double kSearchGap = 4 * kUnitRoundoff;
-
 /// The bodies of a difference that does not climb and has `prepare_supports` called.
 FewVertices posed_few(const PolytopeDifference& difference);
 
@@ -23,11 +20,6 @@ FewVertices posed_few(const PolytopeDifference& difference);
 /// `certified` is false where the origin may lie in P or rounding left the bracket wider than asked.
 ClosestPoint closest_of_few(const PolytopeDifference& difference, std::span<const DifferenceVertex> start,
                             double relative, const BracketWidth& width, std::int64_t& support_calls);
-
-/// The same for a difference that climbs, of a table's supports, certified where the search may end.
-ClosestPoint closest_of_many(const PolytopeDifference& difference, std::span<const DifferenceVertex> start,
-                             double relative, const BracketWidth& width, std::vector<std::int32_t>& stack,
-                             std::int64_t& support_calls);
 
 struct PlaneOfFew {
   Vec3 normal;         ///< unit

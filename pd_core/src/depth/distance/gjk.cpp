@@ -1,134 +1,135 @@
 #include "depth/distance/gjk.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <type_traits>
 
-#include "numeric/instruction_sets.hpp"
+#include "depth/distance/closest_search.hpp"
+#include "depth/distance/lane_simplex.hpp"
 #include "numeric/unit_roundoff.hpp"
 
 namespace pd::detail {
 
 namespace {
 
-/// The faces of a simplex that were looked at, and the nearest point among them.
-class NearestOfFaces {
+/// Of the reach: below it single precision, in which a search over many vertices looks for supports, cannot tell.
+constexpr double kSeenGap = 0x1p-20;
+
+/// The direction to look for a support in: along the normal of the face that holds the nearest point.
+///
+/// The point errs by u times the reach, so that its direction errs by u reach / distance and the support there by
+/// u reach^2 / distance: a body on a wide floor would never be certified. A face's own normal knows no distance; as
+/// any unit direction gives a valid bound, it is taken wherever it is that direction but for the point's rounding.
+/// @param noise  of the point's coordinates, with something to spare: witnesses along the normal keep to it.
+Vec3 search_direction(const Vec3& normal, const Vec3& point, double length, double noise) {
+  const Vec3 toward = -point / length;
+  return (normal - toward).norm() <= std::min(0x1p-20, noise / length) ? normal : toward;
+}
+
+template <class Difference>
+class DistanceSearch {
  public:
-  explicit NearestOfFaces(const DifferenceVertex* simplex) : s_(simplex) {}
+  DistanceSearch(const Difference& difference, double relative, const BracketWidth& width,
+                 std::vector<std::int32_t>& stack, std::int64_t& support_calls, ClosestPoint& found)
+      : r(found),
+        difference_(difference),
+        error_(distance_errors(difference)),
+        relative_(relative),
+        width_(width),
+        stack_(stack),
+        support_calls_(support_calls) {}
 
-  PD_INLINE void vertex(int i) { take<1>({i}, {1.0}); }
+  void see(const DifferenceVertex& s) { largest_ = std::max(largest_, s.x.cwiseAbs().maxCoeff()); }
 
-  PD_INLINE void edge(int i, int j) {
-    const Vec3 e = s_[j].x - s_[i].x;
-    // Each weight from its own end keeps both accurate.
-    take<2>({i, j}, {s_[j].x.dot(e), -s_[i].x.dot(e)});
-  }
-
-  /// False where the origin's projection lies outside.
-  PD_INLINE bool triangle(int i, int j, int k) {
-    const Vec3 n = (s_[j].x - s_[i].x).cross(s_[k].x - s_[i].x);
-    return take<3>({i, j, k},
-                   {n.dot(s_[j].x.cross(s_[k].x)), n.dot(s_[k].x.cross(s_[i].x)), n.dot(s_[i].x.cross(s_[j].x))});
-  }
-
-  /// Keeps the face of the nearest point in the simplex, which it was made from; returns the point.
-  Vec3 keep(DifferenceVertex (&simplex)[4], int& count, double (&weights)[4]) const {
-    for (int i = 0; i < count_; ++i) {
-      simplex[i] = simplex[members_[i]];  // members ascend, so nothing is overwritten before it is read
-      weights[i] = weights_[i];
+  bool has_reached(const LaneSimplex& simplex) {
+    r.count = simplex.count();
+    r.point = simplex.point();
+    for (int i = 0; i < r.count; ++i) {
+      r.simplex[i] = simplex.corner(i);
+      r.weights[i] = simplex.weight(i);
     }
-    count = count_;
-    return point_;
+    length_ = r.point.norm();
+    r.upper = length_ + error_.upper;
+    if (!(length_ > 4 * error_.lower)) return true;
+    r.normal = search_direction(simplex.toward(), r.point, length_, 6 * error_.upper);
+    return false;
   }
+
+  DifferenceVertex support(const LaneSimplex& /*simplex*/) {
+    ++support_calls_;
+    return difference_.search_support_along(r.normal);
+  }
+
+  bool goes_on(const LaneSimplex& simplex, DifferenceVertex& s) {
+    see(s);
+    double height = -s.x.dot(r.normal);
+    see_far_side(height);
+    bool known = simplex.has_corner(s);
+    if (known || is_narrow(height, largest_) || may_be_farther(height)) {
+      s = difference_.certified_support(r.normal, s, stack_);
+      height = -s.x.dot(r.normal);
+      r.certified = is_narrow(height, largest_);
+      known = simplex.has_corner(s);
+    }
+    return !r.certified && !known && length_ - height > kSearchGap * difference_.reach();
+  }
+
+  ClosestPoint& r;
 
  private:
-  /// Weights up to a factor. False where one is not positive.
-  template <int Count>
-  PD_INLINE bool take(const int (&members)[Count], const double (&weights)[Count]) {
-    double total = 0;
-    for (int i = 0; i < Count; ++i) {
-      if (!(weights[i] > 0)) return false;
-      total += weights[i];
-    }
-    const double share = 1 / total;
-    // Weights are fourth powers of lengths, which leave the range of doubles before lengths do.
-    if (!(share > 0 && share < std::numeric_limits<double>::infinity())) return false;
-    // Whatever rounding did to the weights of a near-degenerate simplex, the point is a convex combination of P's.
-    double shares[Count];
-    Vec3 point = Vec3::Zero();
-    for (int i = 0; i < Count; ++i) {
-      shares[i] = weights[i] * share;
-      point += shares[i] * s_[members[i]].x;
-    }
-    const double squared = point.squaredNorm();
-    if (!(squared < squared_)) return true;
-    squared_ = squared;
-    point_ = point;
-    count_ = Count;
-    for (int i = 0; i < Count; ++i) {
-      members_[i] = members[i];
-      weights_[i] = shares[i];
-    }
-    return true;
+  bool is_narrow(double height, double largest) {
+    r.lower = height - error_.lower;
+    return r.lower > 0 && (r.upper - r.lower <= width_.limit(largest) || width_.is_within(relative_, r.lower, r.upper));
   }
 
-  const DifferenceVertex* s_;
-  double squared_ = std::numeric_limits<double>::infinity();
-  Vec3 point_ = Vec3::Zero();
-  int count_ = 0;
-  int members_[3];
-  double weights_[3];
+  /// What is near the origin says little about L; P's centre says more, and P's far side, which takes a support, all.
+  void see_far_side(double height) {
+    if (seen_far_side_ || is_narrow(height, largest_) || !is_narrow(height, difference_.reach())) return;
+    const Vec3 centre = difference_.centre();
+    largest_ = std::max(largest_, centre.cwiseAbs().maxCoeff());
+    if (is_narrow(height, largest_)) return;
+    see(difference_.support(centre, nullptr));
+    ++support_calls_;
+    seen_far_side_ = true;
+  }
+
+  [[nodiscard]] bool may_be_farther(double height) const {
+    return std::is_same_v<Difference, PolytopeDifference> && length_ - height <= kSeenGap * difference_.reach();
+  }
+
+  const Difference& difference_;
+  const DistanceErrors error_;
+  const double relative_;
+  const BracketWidth& width_;
+  std::vector<std::int32_t>& stack_;
+  std::int64_t& support_calls_;
+  double largest_ = 0;
+  double length_ = 0;
+  bool seen_far_side_ = false;
 };
-
-/// No angle at the first corner below 2^-10.
-bool is_well_shaped(const DifferenceVertex* s) {
-  const Vec3 u = s[1].x - s[0].x, v = s[2].x - s[0].x;
-  return u.cross(v).squaredNorm() > 0x1p-20 * u.squaredNorm() * v.squaredNorm();
-}
-
-/// Certain only beyond rounding: four nearly coplanar points enclose nothing.
-bool inside_tetrahedron(const DifferenceVertex* s) {
-  double size = 0;
-  for (int i = 0; i < 4; ++i) size = std::max(size, s[i].x.cwiseAbs().maxCoeff());
-  const double noise = 256 * kUnitRoundoff * size * size * size;
-  const double volume = (s[1].x - s[0].x).cross(s[2].x - s[0].x).dot(s[3].x - s[0].x);
-  const double side = volume < 0 ? -1 : 1;
-  const auto inside = [&](double v) { return side * v > noise; };
-  return inside(s[1].x.cross(s[2].x).dot(s[3].x)) && inside(-s[0].x.cross(s[2].x).dot(s[3].x)) &&
-         inside(s[0].x.cross(s[1].x).dot(s[3].x)) && inside(-s[0].x.cross(s[1].x).dot(s[2].x));
-}
-
-/// @tparam kOfNewest  only faces with the last point.
-template <bool kOfNewest>
-Vec3 nearest_on(DifferenceVertex (&simplex)[4], int& count, double (&weights)[4], bool planar) {
-  if (count == 4 && !planar && inside_tetrahedron(simplex)) {
-    weights[0] = weights[1] = weights[2] = weights[3] = 0.25;
-    return Vec3::Zero();
-  }
-  NearestOfFaces nearest(simplex);
-  const auto asked = [newest = count - 1](int last) { return !kOfNewest || last == newest; };
-  // A triangle that holds the projection holds the nearest point: bodies at rest end here. In a slender one
-  // rounding may say so, too.
-  const bool inside = count == 3 && is_well_shaped(simplex) && nearest.triangle(0, 1, 2);
-  for (int i = 0; i < count && !inside; ++i) {
-    if (asked(i)) nearest.vertex(i);
-    for (int j = i + 1; j < count; ++j) {
-      if (asked(j)) nearest.edge(i, j);
-      for (int k = j + 1; k < count; ++k) {
-        if (asked(k)) nearest.triangle(i, j, k);
-      }
-    }
-  }
-  return nearest.keep(simplex, count, weights);
-}
 
 }  // namespace
 
-Vec3 closest_point_on_simplex(DifferenceVertex (&simplex)[4], int& count, double (&weights)[4], bool planar) {
-  return nearest_on<false>(simplex, count, weights, planar);
+template <class Difference>
+ClosestPoint closest_point(const Difference& difference, std::span<const DifferenceVertex> start, double relative,
+                           const BracketWidth& width, std::vector<std::int32_t>& stack, std::int64_t& support_calls) {
+  ClosestPoint found;
+  DistanceSearch search(difference, relative, width, stack, support_calls, found);
+  LaneSimplex simplex;
+  for (const DifferenceVertex& s : start) {
+    search.see(s);
+    if (!simplex.encloses()) simplex.add(s);
+  }
+  if (simplex.encloses()) {
+    search.has_reached(simplex);
+  } else {
+    search_closest_point(search, simplex);
+  }
+  return found;
 }
 
-Vec3 closest_point_with_newest(DifferenceVertex (&simplex)[4], int& count, double (&weights)[4]) {
-  return nearest_on<true>(simplex, count, weights, false);
-}
+template ClosestPoint closest_point(const SmoothDifference&, std::span<const DifferenceVertex>, double,
+                                    const BracketWidth&, std::vector<std::int32_t>&, std::int64_t&);
+template ClosestPoint closest_point(const PolytopeDifference&, std::span<const DifferenceVertex>, double,
+                                    const BracketWidth&, std::vector<std::int32_t>&, std::int64_t&);
 
 }  // namespace pd::detail

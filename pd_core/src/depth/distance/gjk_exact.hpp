@@ -1,14 +1,12 @@
 /// @file
 /// The point of P nearest to the origin, in exact arithmetic: decides "apart or not" when doubles cannot, and gives the
-/// distance as the root of a rational.
-///
-/// Gilbert, Johnson, Keerthi, "A fast procedure for computing the distance between complex objects in three-dimensional
-/// space", 1988, with every sign exact: the distance strictly falls at each step among finitely many simplices, so it
-/// ends.
+/// distance as the root of a rational. The search (closest_search.hpp) begins in double-double, whose steps cost a
+/// tenth of an exact one.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "depth/difference/exact_support.hpp"
 #include "shape/support/vertex_pair.hpp"
@@ -26,5 +24,13 @@ struct ExactClosestPoint {
 
 /// @param start  vertices of P to begin with (1 to 4), e.g. the simplex of an inexact search; not trusted.
 [[nodiscard]] ExactClosestPoint exact_closest_point(const PosedPair& pair, const VertexPair* start, int count);
+
+struct ClosestSimplex {
+  std::array<VertexPair, 4> vertices;
+  int count;
+};
+
+/// Vertices of P whose hull holds P's closest point to the origin, as far as double-double tells; nothing is proved.
+[[nodiscard]] ClosestSimplex closest_simplex(const PosedPair& pair, std::span<const VertexPair> start);
 
 }  // namespace pd::detail

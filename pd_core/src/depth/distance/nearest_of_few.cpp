@@ -104,13 +104,6 @@ PD_CLONES NearestOfFew nearest_of_few(const FewVertices& bodies, const VertexPai
 
 PD_CLONES bool add_to_face(NearestLaneFace& face, const LanePoint& s) { return add_vertex(face, s); }
 
-NearestOfFew found_on(const NearestLaneFace& face) {
-  NearestOfFew out;
-  put_face(out, face);
-  put(out.direction, face.toward.x, face.toward.y, face.toward.z);
-  return out;
-}
-
 PD_CLONES NearestOfFew nearest_on_simplex(const FewVerticesInFrames& bodies, const VertexPair* simplex, int count,
                                           bool with_support) {
   NearestOfFew out;

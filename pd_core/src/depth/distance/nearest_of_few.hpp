@@ -55,10 +55,8 @@ NearestOfFew nearest_of_few(const FewVertices& bodies, const VertexPair* start, 
 
 struct NearestLaneFace;
 struct LanePoint;
-/// `add_vertex` (simplex_lanes.hpp) for a search over bodies of many vertices, whose supports come from elsewhere, and
-/// what it has found when it ends.
+/// `add_vertex` (simplex_lanes.hpp) for a search whose supports come from elsewhere.
 bool add_to_face(NearestLaneFace& face, const LanePoint& s);
-NearestOfFew found_on(const NearestLaneFace& face);
 
 /// The nearest point of one to three vertices of P, `direction` from there to the origin, and with the support there
 /// also `height`, which tells whether the point is P's nearest, too.

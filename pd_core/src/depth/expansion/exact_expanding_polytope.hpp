@@ -4,12 +4,6 @@
 /// Keeps the exact convex hull of the vertices of P found so far. A face whose plane supports P exactly is a facet of
 /// P; the least of those that no other face can undercut is the depth. Decides touching against overlapping, and ranks
 /// facets whose distances agree to the last bits.
-///
-/// Why its hull (pair_hull.hpp) is not an ExactHull (exact_hull.hpp): its points are pairs of vertex ids whose exact
-/// differences are never rounded, so sides come from PosedPair and a face carries two bounds of its distance, not a
-/// value; and which of several exactly tied facets is met first follows from the order in which faces take slots, which
-/// one common insertion would change for one of the two, and with it the bits of answers. They share the tetrahedron,
-/// the numbered steps and what an observer is shown.
 #pragma once
 
 #include <optional>

@@ -14,19 +14,22 @@
 #include <vector>
 
 #include "depth/difference/polytope_difference.hpp"
+#include "depth/expansion/growing_hull.hpp"
 #include "depth/expansion/surface_check.hpp"
 
 namespace pd::detail {
 
-class ExactHull {
+struct ExactHullFace {
+  std::int32_t v[3] = {-1, -1, -1};  ///< counter-clockwise from outside
+  std::int32_t adj[3] = {-1, -1, -1};
+  Vec3 unit_normal;
+  double distance = 0;  ///< signed, of the plane from the origin; relative error of some u, as the normal's
+  bool alive = true;
+};
+
+class ExactHull : public GrowingHull<ExactHull, ExactHullFace> {
  public:
-  struct Face {
-    std::int32_t v[3];    ///< counter-clockwise from outside
-    std::int32_t adj[3];  ///< the face across the edge v[i] -> v[i + 1]
-    Vec3 unit_normal;
-    double distance;  ///< signed, of the plane from the origin; relative error of some u, as the normal's
-    bool alive;
-  };
+  using Face = ExactHullFace;
 
   std::vector<DifferenceVertex> vertices;
 
@@ -36,10 +39,7 @@ class ExactHull {
   /// Puts the last vertex in. False when it does not lie strictly outside face `from`.
   bool insert(int from);
   /// The face whose plane is nearest (signed).
-  [[nodiscard]] int nearest();
-  [[nodiscard]] const Face& face(int f) const { return faces_[static_cast<std::size_t>(f)]; }
-  /// Number of faces ever made, those no longer alive among them.
-  [[nodiscard]] int slots() const { return static_cast<int>(faces_.size()); }
+  [[nodiscard]] int nearest() const;
   /// Number of faces alive. Time O(slots).
   [[nodiscard]] int size() const;
 
@@ -49,18 +49,12 @@ class ExactHull {
   [[nodiscard]] std::optional<SurfaceFault> validate() const;
 
  private:
-  struct Entry {
-    double distance;
-    std::int32_t face;
-  };
+  friend class GrowingHull<ExactHull, ExactHullFace>;
   [[nodiscard]] const Vec3& at(std::int32_t v) const { return vertices[static_cast<std::size_t>(v)].x; }
-  [[nodiscard]] bool is_visible(const Face& face, std::int32_t v) const;
-  bool insert_vertex(int from);
-  void add_face(std::int32_t a, std::int32_t b, std::int32_t c);
+  [[nodiscard]] int side(int f, int v) const;
+  void forget(int /*slot*/) const {}
+  void measure(Face& f) const;
 
-  std::vector<Face> faces_;  ///< never reused: an entry of the heap is stale exactly when its face is dead
-  std::vector<Entry> heap_;
-  std::vector<std::int32_t> visible_;
   unsigned checked_insertions_ = 0;  ///< see validate_after_insertion
 };
 

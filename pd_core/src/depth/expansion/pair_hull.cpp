@@ -1,6 +1,5 @@
 #include "depth/expansion/pair_hull.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace pd::detail {
@@ -29,10 +28,10 @@ const Dyadic3& PairHull::exact_point(int v) {
 }
 
 const Dyadic3& PairHull::exact_normal(int f) {
-  normals_.resize(faces_.size());
+  normals_.resize(faces().size());
   std::optional<Dyadic3>& normal = normals_[f];
   if (!normal) {
-    const Face& face = faces_[f];
+    const Face& face = this->face(f);
     const Dyadic3& from = exact_point(face.v[0]);
     normal = cross(exact_point(face.v[1]) - from, exact_point(face.v[2]) - from);
   }
@@ -40,7 +39,7 @@ const Dyadic3& PairHull::exact_normal(int f) {
 }
 
 int PairHull::side(int f, int v) {
-  const Face& face = faces_[f];
+  const Face& face = this->face(f);
   const VertexPair &p = vertices_[face.v[0]], &q = vertices_[face.v[1]], &r = vertices_[face.v[2]], &s = vertices_[v];
   if (closes_parallelogram(p, q, r, s) || closes_parallelogram(q, r, p, s) || closes_parallelogram(r, p, q, s)) {
     return 0;
@@ -48,39 +47,6 @@ int PairHull::side(int f, int v) {
   const std::optional<int> rounded =
       pair_.sign_determinant_rounded(edge(corner(face, 0), v), first_edge(face), second_edge(face));
   return rounded ? *rounded : dot(exact_normal(f), exact_point(v) - exact_point(face.v[0])).sign();
-}
-
-void PairHull::remove_below(int from, int v) {
-  struct Visit {
-    int face, edge, left;
-  };
-  std::vector<Visit> visits{{from, 0, 3}};
-  std::vector<int> removed{from};
-  horizon_.clear();
-  faces_[from].alive = false;
-  while (!visits.empty()) {
-    Visit& visit = visits.back();
-    if (visit.left == 0) {
-      visits.pop_back();
-      continue;
-    }
-    const int f = visit.face;
-    const int e = visit.edge;
-    visit.edge = (e + 1) % 3;
-    --visit.left;
-    const int g = faces_[f].adj[e];
-    if (!faces_[g].alive) continue;
-    int entered = 0;
-    while (faces_[g].adj[entered] != f || faces_[g].v[(entered + 1) % 3] != faces_[f].v[e]) ++entered;
-    if (side(g, v) > 0) {
-      faces_[g].alive = false;
-      removed.push_back(g);
-      visits.push_back({g, (entered + 1) % 3, 2});
-    } else {
-      horizon_.push_back({g, entered, faces_[f].v[e], faces_[f].v[(e + 1) % 3]});
-    }
-  }
-  free_.insert(free_.end(), removed.begin(), removed.end());
 }
 
 void PairHull::measure_finely(Face& f) const {

@@ -6,45 +6,42 @@
 /// origin is measured by whoever asks, in doubles or in double-double.
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "depth/expansion/tetrahedron.hpp"
+#include "depth/expansion/growing_hull.hpp"
 #include "numeric/double_double.hpp"
 #include "shape/posed_pair.hpp"
 #include "shape/support/vertex_pair.hpp"
 
 namespace pd::detail {
 
-class PairHull {
+struct PairHullFace {
+  std::int32_t v[3] = {-1, -1, -1};
+  std::int32_t adj[3] = {-1, -1, -1};
+  std::int32_t first = 0;  ///< index in `v` of the corner from which its plane is measured
+  /// Signed distance of the plane from the origin, positive where the origin lies behind it (scaled lengths), within
+  /// `error`; infinite: the normal drowned in rounding.
+  DoubleDouble distance;
+  double error = std::numeric_limits<double>::infinity();
+  double lower = 0;  ///< the same as bounds in doubles
+  double upper = 0;
+  bool alive = true;
+  bool facet = false;    ///< known to support P
+  bool fine = false;     ///< measured in double-double
+  bool farther = false;  ///< than the facet found, exactly
+};
+
+class PairHull : public GrowingHull<PairHull, PairHullFace> {
  public:
-  struct Face {
-    std::int32_t v[3] = {-1, -1, -1};
-    std::int32_t adj[3] = {-1, -1, -1};
-    std::int32_t first = 0;  ///< index in `v` of the corner from which its plane is measured
-    /// Signed distance of the plane from the origin, positive where the origin lies behind it (scaled lengths), within
-    /// `error`; infinite: the normal drowned in rounding.
-    DoubleDouble distance;
-    double error = std::numeric_limits<double>::infinity();
-    double lower = 0;  ///< the same as bounds in doubles
-    double upper = 0;
-    bool alive = true;
-    bool facet = false;    ///< known to support P
-    bool fine = false;     ///< measured in double-double
-    bool farther = false;  ///< than the facet found, exactly
-  };
+  using Face = PairHullFace;
 
   explicit PairHull(const PosedPair& pair) : pair_(pair) {}
 
   [[nodiscard]] const PosedPair& pair() const { return pair_; }
-  [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
-  [[nodiscard]] Face& face(int f) { return faces_[f]; }
-  [[nodiscard]] const Face& face(int f) const { return faces_[f]; }
   [[nodiscard]] int num_vertices() const { return static_cast<int>(vertices_.size()); }
   [[nodiscard]] const VertexPair& vertex(int v) const { return vertices_[v]; }
   int add_vertex(const VertexPair& id) {
@@ -75,29 +72,13 @@ class PairHull {
   template <class Measure>
   void start(Measure&& measure) {
     if (pair_.sign_determinant(edge(0, 3), edge(0, 1), edge(0, 2)) > 0) std::swap(vertices_[1], vertices_[2]);
-    for (int f = 0; f < 4; ++f) {
-      add_face(kTetrahedronFaces[f][0], kTetrahedronFaces[f][1], kTetrahedronFaces[f][2], measure);
-      for (int e = 0; e < 3; ++e) faces_[f].adj[e] = kTetrahedronBeyond[f][e].face;
-    }
+    start_tetrahedron(measure);
   }
 
-  /// Replaces the faces strictly below vertex v, `from` among them. Exact sides of a convex surface: always a disc; no
-  /// new triangle is degenerate, since v would have to lie on the line of an edge of a face visible from it.
+  /// Replaces the faces strictly below vertex v, `from` among them.
   template <class Measure>
   void insert(int from, int v, Measure&& measure) {
-    remove_below(from, v);
-    fan_.clear();
-    for (const Horizon& h : horizon_) {
-      const int f = add_face(h.from, h.to, v, measure);
-      faces_[f].adj[0] = h.face;
-      faces_[h.face].adj[h.edge] = f;
-      fan_.push_back(f);
-    }
-    for (std::size_t i = 0; i < fan_.size(); ++i) {
-      const std::size_t j = i + 1 == fan_.size() ? 0 : i + 1;
-      faces_[fan_[i]].adj[1] = fan_[j];
-      faces_[fan_[j]].adj[2] = fan_[i];
-    }
+    replace_below(from, v, measure);
   }
 
   /// In double-double. Leaves what drowned in rounding unbounded.
@@ -109,36 +90,15 @@ class PairHull {
     explicit Vertex(const VertexPair& id) : VertexPair(id) {}
     std::optional<Dyadic3> exact;
   };
-  struct Horizon {
-    int face, edge, from, to;
-  };
-
-  template <class Measure>
-  int add_face(int a, int b, int c, Measure&& measure) {
-    Face f;
-    std::copy_n(std::array{a, b, c}.begin(), 3, f.v);
-    measure(f);
-    if (!free_.empty()) {
-      const int slot = free_.back();
-      free_.pop_back();
-      faces_[slot] = f;
-      if (slot < static_cast<int>(normals_.size())) normals_[slot].reset();
-      return slot;
-    }
-    faces_.push_back(f);
-    return static_cast<int>(faces_.size()) - 1;
+  friend class GrowingHull<PairHull, PairHullFace>;
+  /// The slot has another face now.
+  void forget(int slot) {
+    if (slot < static_cast<int>(normals_.size())) normals_[static_cast<std::size_t>(slot)].reset();
   }
-
-  /// Frees the faces strictly below vertex v and lists the edges round them.
-  void remove_below(int from, int v);
 
   const PosedPair& pair_;
   std::vector<Vertex> vertices_;
-  std::vector<Face> faces_;
-  std::vector<int> free_;
   std::vector<std::optional<Dyadic3>> normals_;  ///< of faces, once they were asked for
-  std::vector<Horizon> horizon_;
-  std::vector<int> fan_;
 };
 
 }  // namespace pd::detail

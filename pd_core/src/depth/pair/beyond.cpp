@@ -5,7 +5,7 @@
 
 #include "depth/difference/smooth_difference.hpp"
 #include "depth/distance/closest_of_few.hpp"
-#include "depth/distance/nearest_of_few.hpp"
+#include "depth/distance/lane_simplex.hpp"
 #include "depth/expansion/cached_surface.hpp"
 #include "depth/facets/gauss_sat_boxes.hpp"
 #include "depth/pair/scaled_shape.hpp"
@@ -34,9 +34,7 @@ std::optional<SeparatingPlane> find_plane(const Difference& difference, const Ve
   const double length_of_start = start.norm();
   if (!(length_of_start > 0)) return std::nullopt;
   Vec3 unit = start / length_of_start;
-  DifferenceVertex simplex[4];
-  double weights[4];
-  int count = 0;
+  LaneSimplex simplex;
   for (int step = 0; step < kMostSupports; ++step) {
     DifferenceVertex s = difference.support_in_bodies(unit);
     ++support_calls;
@@ -45,15 +43,9 @@ std::optional<SeparatingPlane> find_plane(const Difference& difference, const Ve
       const double lower = -s.x.dot(unit) - error;
       if (lower > least) return SeparatingPlane{unit, lower, s, step == 0};
     }
-    for (int i = 0; i < count; ++i) {
-      if (simplex[i].a == s.a && simplex[i].b == s.b) return std::nullopt;
-    }
-    simplex[count++] = s;
-    const Vec3 point = count == 1 ? simplex[0].x : closest_point_with_newest(simplex, count, weights);
-    const double length = point.norm();
     // A point of P so close to the origin: no plane lies farther from it.
-    if (count == 4 || !(length > least)) return std::nullopt;
-    unit = point / -length;
+    if (!simplex.add(s) || !(simplex.point().norm() > least)) return std::nullopt;
+    unit = simplex.toward();
   }
   return std::nullopt;
 }

@@ -258,7 +258,11 @@ bool answer_few_apart(PolytopeQuery& query, PenetrationDepth& out) {
 
 bool answer_by_gauss_maps(PolytopeQuery& query, PenetrationDepth& out) {
   const PolytopePair& pair = query.pair;
-  if (query.boxes() && answer_boxes(query, out)) return true;
+  if (query.boxes()) {
+    // Faces across a common axis tie on the stored numbers, which the surface proves sooner.
+    if (query.bracket == Bracket::tightest && query.exact().has_an_own_coordinate()) return false;
+    if (answer_boxes(query, out)) return true;
+  }
   if (!gauss_sat_pays(query.difference)) return false;
   // The surface has a memory of the pair.
   if (query.warm || many_flush_facets(pair, query.difference)) return false;
@@ -377,13 +381,9 @@ double relative_of_distance(const PolytopeQuery& query) {
 
 ClosestPoint closest_point(PolytopeQuery& query, std::span<const DifferenceVertex> start, Statistics& statistics) {
   // The tightest bracket's bits are those of the simplex, so that its search stays what it was.
-  if (query.bracket != Bracket::tightest) {
-    const double relative = relative_of_distance(query);
-    const ClosestPoint found =
-        query.difference.climbs()
-            ? closest_of_many(query.difference, start, relative, query.width(), query.buffers.stack,
-                              statistics.support_calls)
-            : closest_of_few(query.with_supports(), start, relative, query.width(), statistics.support_calls);
+  if (query.bracket != Bracket::tightest && !query.difference.climbs()) {
+    const ClosestPoint found = closest_of_few(query.with_supports(), start, relative_of_distance(query), query.width(),
+                                              statistics.support_calls);
     if (found.certified) return found;
   }
   return closest_point(query.with_supports(), start, relative_of_distance(query), query.width(), query.buffers.stack,
