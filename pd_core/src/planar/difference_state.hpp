@@ -2,8 +2,8 @@
 /// What a PolygonDifference keeps.
 #pragma once
 
+#include <atomic>
 #include <memory>
-#include <mutex>
 #include <optional>
 
 #include "planar/boundary/boundary_query.hpp"
@@ -28,8 +28,7 @@ struct PolygonDifference::State {
   detail::BoundaryQuery query;
 
   /// The polygons around R swept by a disc, made by the first question that needs them and kept for the same radius.
-  mutable std::mutex disc_mutex;
-  mutable std::shared_ptr<const detail::DiscBracket> disc;
+  mutable std::atomic<std::shared_ptr<const detail::DiscBracket>> disc;
 
   [[nodiscard]] Point2 turned(const Point2& v) const { return swapped ? Point2{-v[0], -v[1]} : v; }
   /// Fills the answer with the way from y (turned) to the nearest point of the boundary, or of its outer curve alone.

@@ -95,13 +95,11 @@ class SweptDifference {
 
   /// The polygons around R swept by the disc, in the plane of the query.
   [[nodiscard]] Expected<std::shared_ptr<const detail::DiscBracket>> disc() const {
-    const std::lock_guard lock(s_.disc_mutex);
-    if (!s_.disc || s_.disc->radius != radius_) {
-      auto made = detail::DiscBracket::of(s_.p, s_.q, radius_, low_, high_);
-      if (!made) return made.error();
-      s_.disc = *std::move(made);
-    }
-    return s_.disc;
+    std::shared_ptr<const detail::DiscBracket> kept = s_.disc.load();
+    if (kept && kept->radius == radius_) return kept;
+    auto made = detail::DiscBracket::of(s_.p, s_.q, radius_, low_, high_);
+    if (made) s_.disc.store(*made);
+    return made;
   }
 
   /// The ways out of the two polygons around R swept, as one answer.

@@ -28,7 +28,7 @@ constexpr double kMeasured = 0.1;
 class Cutting {
  public:
   Cutting(const MeshSolid& solid, const DecompositionSettings& settings)
-      : solid_(solid), settings_(settings), cells_(solid) {}
+      : solid_(solid), settings_(settings), cells_(solid), edges_(solid, cells_.exponent()) {}
   virtual ~Cutting() = default;
   Cutting(const Cutting&) = delete;
   Cutting& operator=(const Cutting&) = delete;
@@ -94,6 +94,7 @@ class Cutting {
   const MeshSolid& solid_;
   const DecompositionSettings& settings_;
   SolidCells cells_;
+  SharpEdges edges_;
   std::vector<PlanePolygon> faces_;  ///< of the solid, in the order of its triangles
   std::vector<SolidPart> parts_;
   std::int64_t steps_ = 0;
@@ -107,7 +108,8 @@ class OuterParts : public Cutting {
     cut();
     parts_ = merged(std::move(parts_), {.gap = settings_.error,
                                         .error_of = [&](const ConvexPolytope& hull) { return error_of(hull); },
-                                        .goes_on = [&] { return steps() < settings_.max_steps; }});
+                                        .goes_on = [&] { return steps() < settings_.max_steps; },
+                                        .spend = [&](std::int64_t steps) { steps_ += steps; }});
     for (SolidPart& part : parts_) {
       if (part.measured || part.error == 0) continue;
       tell(0);
@@ -150,7 +152,7 @@ class OuterParts : public Cutting {
       if (!hull || hull->affine_dimension() < 3) outer = outer_of(contents);
       found = reach(outer ? outer->polytope : *hull, {settings_.error * (1 - 0x1p-30), 0, kStepsToCut});
       if (found.upper > settings_.error && !must_take) {
-        if (const auto plane = contents.best_cut(cells_.planes(), found.worst / scale(), steps_)) return plane;
+        if (const auto plane = contents.best_cut(cells_.planes(), edges_, found.worst / scale(), steps_)) return plane;
       }
     }
     if (!outer) outer = outer_of(contents);
@@ -197,7 +199,8 @@ class InnerParts : public Cutting {
     for (const std::vector<Vec3>& points : without_part_) largest = std::max(largest, nearest_part(points));
     parts_ = merged(std::move(parts_), {.gap = 0x1p-40 * scale(),
                                         .error_of = [&](const ConvexPolytope& hull) { return error_of(hull); },
-                                        .goes_on = [&] { return steps() < settings_.max_steps; }});
+                                        .goes_on = [&] { return steps() < settings_.max_steps; },
+                                        .spend = [&](std::int64_t steps) { steps_ += steps; }});
     // A merged part holds the parts that it replaces, so that no point of the solid is farther from it than from them.
     for (SolidPart& part : parts_) part.error = largest;
     return {std::move(parts_), steps()};
@@ -223,7 +226,7 @@ class InnerParts : public Cutting {
     std::optional<SolidPart> part;
     if (below) part = part_of(*below, points, worst);
     if (!must_take && !(part && part->error <= settings_.error)) {
-      if (const auto plane = contents.best_cut(cells_.planes(), worst / scale(), steps_)) return plane;
+      if (const auto plane = contents.best_cut(cells_.planes(), edges_, worst / scale(), steps_)) return plane;
     }
     if (part) {
       parts_.push_back(*std::move(part));

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "shape/mesh/triangle_tree.hpp"
+
 namespace pd::detail {
 
 double volume_of(const ConvexPolytope& polytope) {
@@ -41,8 +43,7 @@ bool equal(const ConvexPolytope& a, const ConvexPolytope& b) {
 class Merger {
  public:
   Merger(std::vector<SolidPart> parts, const MergingRules& rules) : parts_(std::move(parts)), rules_(rules) {
-    for (const SolidPart& part : parts_) volumes_.push_back(volume_of(part.polytope));
-    gone_.resize(parts_.size(), 0);
+    for (const SolidPart& part : parts_) note(part.polytope);
   }
 
   std::vector<SolidPart> run() {
@@ -55,8 +56,7 @@ class Merger {
       const std::optional<double> error = rules_.error_of(best.hull);
       if (!error) continue;
       gone_[best.i] = gone_[best.j] = 1;
-      gone_.push_back(0);
-      volumes_.push_back(volume_of(best.hull));
+      note(best.hull);
       parts_.push_back({std::move(best.hull), *error, false});
       add_pairs_before(parts_.size() - 1);
     }
@@ -68,25 +68,33 @@ class Merger {
   }
 
  private:
+  /// Of a part that is about to be the last one.
+  void note(const ConvexPolytope& body) {
+    volumes_.push_back(volume_of(body));
+    gone_.push_back(0);
+    TriangleBox box{body.vertex(0), body.vertex(0)};
+    for (int v = 1; v < body.num_vertices(); ++v) {
+      box.low = box.low.cwiseMin(body.vertex(v));
+      box.high = box.high.cwiseMax(body.vertex(v));
+    }
+    boxes_.push_back(box);
+  }
+
   void add_pairs_before(std::size_t j) {
     for (std::size_t i = 0; i < j; ++i) {
-      if (gone_[i] == 0 && gone_[j] == 0) add_pair(i, j);
+      if (gone_[i] != 0 || gone_[j] != 0) continue;
+      const TriangleBox &a = boxes_[i], &b = boxes_[j];
+      if ((a.low - b.high).cwiseMax(b.low - a.high).maxCoeff() <= rules_.gap) add_pair(i, j);
     }
   }
 
   void add_pair(std::size_t i, std::size_t j) {
     std::vector<Vec3> points;
-    Vec3 low[2], high[2];
-    for (const int side : {0, 1}) {
-      const ConvexPolytope& body = parts_[side == 0 ? i : j].polytope;
-      low[side] = high[side] = body.vertex(0);
-      for (int v = 0; v < body.num_vertices(); ++v) {
-        points.push_back(body.vertex(v));
-        low[side] = low[side].cwiseMin(points.back());
-        high[side] = high[side].cwiseMax(points.back());
-      }
+    for (const std::size_t part : {i, j}) {
+      const ConvexPolytope& body = parts_[part].polytope;
+      for (int v = 0; v < body.num_vertices(); ++v) points.push_back(body.vertex(v));
     }
-    if ((low[0] - high[1]).cwiseMax(low[1] - high[0]).maxCoeff() > rules_.gap) return;
+    rules_.spend(static_cast<std::int64_t>(points.size()));
     auto hull = ConvexPolytope::from_points(points);
     if (!hull || hull->affine_dimension() < 3) return;
     for (const auto& [held, holds] : {std::pair(i, j), std::pair(j, i)}) {
@@ -103,6 +111,7 @@ class Merger {
   std::vector<SolidPart> parts_;
   const MergingRules& rules_;
   std::vector<double> volumes_;
+  std::vector<TriangleBox> boxes_;
   std::vector<char> gone_;
   std::vector<MergingPair> open_;  ///< a heap
 };

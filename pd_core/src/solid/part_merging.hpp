@@ -2,6 +2,7 @@
 /// Neighbouring convex parts are merged into their common hull, where the hull is good enough.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -23,6 +24,8 @@ struct MergingRules {
   std::function<std::optional<double>(const ConvexPolytope& hull)> error_of;
   /// False: the work ends.
   std::function<bool()> goes_on;
+  /// Takes note of work: the points of a hull that was made.
+  std::function<void(std::int64_t)> spend;
 };
 
 /// Merges the pair whose hull adds the smallest share of volume first, until no pair has a hull that is good enough. A
