@@ -75,35 +75,35 @@ InsideMargin inside_margin(const btConvexInternalShape& shape) {
   return {half + btVector3(excess, excess, excess), margin - excess};
 }
 
+/// Calls `visit` with the corners of a box.
+template <class Visit>
+void visit_corners(const btVector3& half, Visit&& visit) {
+  for (int i = 0; i < 8; ++i) {
+    visit(btVector3((i & 1) ? half.x() : -half.x(), (i & 2) ? half.y() : -half.y(), (i & 4) ? half.z() : -half.z()));
+  }
+}
+
 /// Calls `visit` with the points whose hull is the core of a polyhedral shape, scaled as Bullet's support scales them.
 /// @return false where the type is not polyhedral.
 template <class Visit>
 bool for_each_point(const btConvexShape& shape, Visit&& visit) {
+  const auto visit_scaled = [&](const auto& points) {
+    for (int i = 0; i < points.getNumPoints(); ++i) visit(points.getScaledPoint(i));
+    return true;
+  };
   switch (shape.getShapeType()) {
     case BOX_SHAPE_PROXYTYPE:
     case BOX_2D_SHAPE_PROXYTYPE: {
       const btVector3 core = inside_margin(static_cast<const btConvexInternalShape&>(shape)).half_extents;
       const btVector3 h(std::max(core.x(), btScalar(0)), std::max(core.y(), btScalar(0)),
                         std::max(core.z(), btScalar(0)));
-      for (int i = 0; i < 8; ++i) {
-        visit(btVector3((i & 1) ? h.x() : -h.x(), (i & 2) ? h.y() : -h.y(), (i & 4) ? h.z() : -h.z()));
-      }
+      visit_corners(h, visit);
       return true;
     }
-    case CONVEX_HULL_SHAPE_PROXYTYPE: {
-      const auto& hull = static_cast<const btConvexHullShape&>(shape);
-      for (int i = 0; i < hull.getNumPoints(); ++i) {
-        visit(hull.getScaledPoint(i));
-      }
-      return true;
-    }
-    case CONVEX_POINT_CLOUD_SHAPE_PROXYTYPE: {
-      const auto& cloud = static_cast<const btConvexPointCloudShape&>(shape);
-      for (int i = 0; i < cloud.getNumPoints(); ++i) {
-        visit(cloud.getScaledPoint(i));
-      }
-      return true;
-    }
+    case CONVEX_HULL_SHAPE_PROXYTYPE:
+      return visit_scaled(static_cast<const btConvexHullShape&>(shape));
+    case CONVEX_POINT_CLOUD_SHAPE_PROXYTYPE:
+      return visit_scaled(static_cast<const btConvexPointCloudShape&>(shape));
     case TRIANGLE_SHAPE_PROXYTYPE: {
       const auto& triangle = static_cast<const btTriangleShape&>(shape);
       for (int i = 0; i < 3; ++i) {
@@ -380,21 +380,18 @@ std::uint64_t shape_signature(const btConvexShape& shape) {
   const int type = shape.getShapeType();
   hash.add(static_cast<std::uint64_t>(type));
   hash.add(bullet_margin(shape));
+  const auto add_points = [&](const auto& points) {
+    hash.add(static_cast<std::uint64_t>(points.getNumPoints()));
+    hash.add(std::bit_cast<std::uintptr_t>(points.getUnscaledPoints()));
+    hash.add(points.getLocalScalingNV());
+  };
   switch (type) {
-    case CONVEX_HULL_SHAPE_PROXYTYPE: {
-      const auto& hull = static_cast<const btConvexHullShape&>(shape);
-      hash.add(static_cast<std::uint64_t>(hull.getNumPoints()));
-      hash.add(std::bit_cast<std::uintptr_t>(hull.getUnscaledPoints()));
-      hash.add(hull.getLocalScalingNV());
+    case CONVEX_HULL_SHAPE_PROXYTYPE:
+      add_points(static_cast<const btConvexHullShape&>(shape));
       break;
-    }
-    case CONVEX_POINT_CLOUD_SHAPE_PROXYTYPE: {
-      const auto& cloud = static_cast<const btConvexPointCloudShape&>(shape);
-      hash.add(static_cast<std::uint64_t>(cloud.getNumPoints()));
-      hash.add(std::bit_cast<std::uintptr_t>(cloud.getUnscaledPoints()));
-      hash.add(cloud.getLocalScalingNV());
+    case CONVEX_POINT_CLOUD_SHAPE_PROXYTYPE:
+      add_points(static_cast<const btConvexPointCloudShape&>(shape));
       break;
-    }
     case BOX_SHAPE_PROXYTYPE:
     case BOX_2D_SHAPE_PROXYTYPE:
     case SPHERE_SHAPE_PROXYTYPE:
@@ -417,10 +414,7 @@ Expected<ConvexShape> to_sharp_box(const btBoxShape& shape) {
   }
   // A box without extent on some axis is a rectangle, a segment or a point.
   std::vector<Vec3> points;
-  for (int i = 0; i < 8; ++i) {
-    points.push_back(to_pd(
-        btVector3((i & 1) ? half.x() : -half.x(), (i & 2) ? half.y() : -half.y(), (i & 4) ? half.z() : -half.z())));
-  }
+  visit_corners(half, [&](const btVector3& corner) { points.push_back(to_pd(corner)); });
   return swept_hull(shape, points, 0);
 }
 

@@ -7,10 +7,10 @@
 ///
 ///     s(t) >= min(s(t0), s(t1)) - (t1 - t0)^2 / 8 * c,   c = curvature_bound(body)
 ///
-/// (pd/contact/time_of_impact.hpp says why). A direction may also turn with the moving body: the six faces of the box
-/// about its core are such directions, and c is then omega (2 v + omega D), v the speed of the body's pivot and D the
-/// largest distance of a corner from it. Most triangles under a body that rests, rolls or rocks are told apart in one
-/// of these ways, without a query of their distance.
+/// (pd/contact/time_of_impact.hpp says why). A direction may also turn with the moving body, as the six faces of the
+/// box about its core do. Then c = omega (2 v + omega D). Here v is the speed of the body's pivot, and D the largest
+/// distance of a corner from the pivot. Most triangles under a body that rests, rolls or rocks are told apart in one of
+/// these ways, without a query of their distance.
 #pragma once
 
 #include <array>
