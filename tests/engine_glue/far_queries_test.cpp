@@ -23,9 +23,9 @@ struct Asked : btCollisionWorld::ContactResultCallback {
   }
 };
 
-/// Two bricks of two hulls each.
+/// Two bricks of two hulls each, in a compound of their own or in compounds inside of it.
 struct Bricks : BulletWorld {
-  explicit Bricks(const btVector3& at) {
+  explicit Bricks(const btVector3& at, bool nested = false) {
     install(world(), solver);
     auto* hull = shape<btConvexHullShape>();
     for (const btScalar x : {btScalar(-0.5), btScalar(0.5)}) {
@@ -36,7 +36,14 @@ struct Bricks : BulletWorld {
     hull->setMargin(0);
     auto* brick = shape<btCompoundShape>();
     for (const btScalar x : {btScalar(-0.5), btScalar(0.5)}) {
-      brick->addChildShape(btTransform(btQuaternion::getIdentity(), btVector3(x, 0, 0)), hull);
+      const btTransform place(btQuaternion::getIdentity(), btVector3(x, 0, 0));
+      if (nested) {
+        auto* half = shape<btCompoundShape>();
+        half->addChildShape(btTransform::getIdentity(), hull);
+        brick->addChildShape(place, half);
+      } else {
+        brick->addChildShape(place, hull);
+      }
     }
     first = body(brick, 1, btVector3(0, 0, 0));
     second = body(brick, 1, at);
@@ -67,6 +74,35 @@ TEST(FarQueries, TheDepthDoesNotDependOnTheDistanceAskedFor) {
   EXPECT_EQ(near.least, far.least);
 }
 
+/// Bullet tells one point for each pair of convex bodies.
+TEST(FarQueries, TwoBoxesThatAreApartTellOnePoint) {
+  BulletWorld world;
+  BulletPenetrationDepthSolver solver;
+  install(world.world(), solver);
+  auto* const box = world.shape<btBoxShape>(btVector3(1, 1, 1));
+  btRigidBody* const low = world.body(box, 1, btVector3(0, 0, 0));
+  btRigidBody* const high = world.body(box, 1, btVector3(btScalar(0.5), 3, 0));
+  Asked asked;
+  asked.m_closestDistanceThreshold = 10;
+  world.world().contactPairTest(low, high, asked);
+  EXPECT_EQ(asked.points, 1);
+  EXPECT_NEAR(asked.least, 1, 1e-5);
+  Asked near;
+  near.m_closestDistanceThreshold = btScalar(0.5);
+  world.world().contactPairTest(low, high, near);
+  EXPECT_EQ(near.points, 0);
+}
+
+TEST(FarQueries, CompoundsInCompoundsAnswerAsOne) {
+  const btVector3 high(0, 3, 0), deep(btScalar(0.3), btScalar(0.9), btScalar(0.2));
+  for (const btVector3& at : {high, deep}) {
+    const Asked nested = Bricks(at, true).ask(10), flat = Bricks(at).ask(10);
+    EXPECT_EQ(nested.points, flat.points);
+    EXPECT_EQ(nested.least, flat.least);
+    EXPECT_EQ(nested.sum, flat.sum);
+  }
+}
+
 struct CountingDispatcher : btCollisionDispatcher {
   using btCollisionDispatcher::btCollisionDispatcher;
   btPersistentManifold* getNewManifold(const btCollisionObject* a, const btCollisionObject* b) override {
@@ -84,9 +120,12 @@ TEST(FarQueries, ManyChildrenShareOneManifold) {
   BulletPenetrationDepthSolver solver;
   install(world, solver);
   btBoxShape box(btVector3(1, 1, 1));
-  btCompoundShape row;
-  for (int i = 0; i < 4; ++i) {
-    row.addChildShape(btTransform(btQuaternion::getIdentity(), btVector3(btScalar(3 * i), 0, 0)), &box);
+  btCompoundShape two, row;
+  for (const int i : {0, 3}) {
+    two.addChildShape(btTransform(btQuaternion::getIdentity(), btVector3(btScalar(i), 0, 0)), &box);
+  }
+  for (const int i : {0, 6}) {
+    row.addChildShape(btTransform(btQuaternion::getIdentity(), btVector3(btScalar(i), 0, 0)), &two);
   }
   btCollisionObject first, second;
   first.setCollisionShape(&row);

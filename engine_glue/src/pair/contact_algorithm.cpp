@@ -105,7 +105,11 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
   std::optional<PairAnswer> answer;
   // An algorithm that is used for the first time may belong to a query between two steps, whose shapes nobody compared.
   const std::uint64_t stamp = first ? 0 : world_.stamp();
-  if (!boxes || !box_contacts(shape_a, pose_a, shape_b, pose_b, static_cast<double>(reach), *buffers, fresh)) {
+  const auto asked_reach = static_cast<double>(threshold);
+  const double contact_reach = std::min(asked_reach, static_cast<double>(manifold.getContactBreakingThreshold()));
+  const bool asked_for_more = contact_reach < asked_reach;
+  if (!boxes || asked_for_more ||
+      !box_contacts(shape_a, pose_a, shape_b, pose_b, static_cast<double>(reach), *buffers, fresh)) {
     const SharpCorners corners{true, of_union && is_part(*a), of_union && is_part(*b)};
     const PairQuestion asked{.a = shape_a,
                              .pose_a = pose_a,
@@ -116,11 +120,8 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
                              .stamp = stamp,
                              .corners = corners,
                              .beyond = touched ? kAnyDistance : static_cast<double>(threshold),
-                             .boxes_asked = boxes};
+                             .boxes_asked = boxes && !asked_for_more};
     ContactManifold points;
-    const auto asked_reach = static_cast<double>(threshold);
-    const double contact_reach =
-        of_union ? std::min(asked_reach, static_cast<double>(manifold.getContactBreakingThreshold())) : asked_reach;
     const auto outcome = core.contacts(asked, contact_reach, *buffers, answer.emplace(), points);
     if (outcome == SolverCore::Outcome::unsupported) {
       process_by_bullet(core.fallback(), *a, *b, info, *result);
@@ -136,6 +137,8 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
                                .seconds = static_cast<double>(info.m_timeStep),
                                .shapes = {core.cache, stamp}},
                               *answer, *buffers, points);
+      } else {
+        far_pair(contact_reach, asked_reach, answer->depth, points);
       }
       fresh = fresh_points(points);
     }

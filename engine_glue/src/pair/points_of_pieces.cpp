@@ -18,13 +18,17 @@ ContactManifold closest_point_of(const PenetrationDepth& depth) {
 
 }  // namespace
 
+bool far_pair(double contact_reach, double asked_reach, const PenetrationDepth& depth, ContactManifold& points) {
+  const double distance = depth.signed_distance();
+  if (distance <= contact_reach) return false;
+  points.count = 0;
+  if (distance <= asked_reach) points = closest_point_of(depth);
+  return true;
+}
+
 void keep_points_of_pieces(const AskedPair& asked, const PairAnswer& answer, ThreadBuffers& buffers,
                            ContactManifold& points) {
-  const double distance = answer.depth.signed_distance();
-  if (distance > asked.contact_reach) {
-    if (distance <= asked.asked_reach) points = closest_point_of(answer.depth);
-    return;
-  }
+  if (far_pair(asked.contact_reach, asked.asked_reach, answer.depth, points)) return;
   AskedPieces pieces(asked.a, asked.b,
                      {.threshold = asked.contact_reach,
                       .seconds = asked.seconds,

@@ -22,6 +22,10 @@ struct AskedPair {
   StepShapes shapes;
 };
 
+/// Changes the points of a pair that is farther apart than contacts reach to its closest point, as Bullet's queries get
+/// one, or to none beyond what was asked for. @return false, and nothing changed, for a pair that is nearer
+bool far_pair(double contact_reach, double asked_reach, const PenetrationDepth& depth, ContactManifold& points);
+
 /// Changes the points of an answer to those that hold for the unions. If the pieces are farther apart than contacts
 /// reach, it is their closest point, as Bullet's queries get one for each pair of a compound's children.
 /// Requires: `buffers.near.begin_pair`.

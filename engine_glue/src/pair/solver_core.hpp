@@ -18,6 +18,7 @@
 #include "pd/bullet/penetration_depth_solver.hpp"
 #include "pd/bullet/shape_cache.hpp"
 #include "pd/contact/halfspace_contact.hpp"
+#include "shapes/flat_compound.hpp"
 #include "shapes/pair_answer.hpp"
 #include "shapes/step_shapes.hpp"
 
@@ -131,6 +132,7 @@ class SolverCore {
 
   BulletSolverSettings settings;
   BulletShapeCache cache;
+  FlatCompounds flat_compounds;
   ThreadBufferPool buffers;
   PairRegistry pairs;
 

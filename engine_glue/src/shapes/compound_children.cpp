@@ -8,6 +8,7 @@
 
 #include "pd/bullet/scalar.hpp"
 #include "shapes/child_tree.hpp"
+#include "shapes/flat_compound.hpp"
 
 namespace pd::detail {
 
@@ -15,6 +16,10 @@ namespace {
 
 /// Importers put a `btEmptyShape` where a link has nothing to collide with.
 bool is_empty(const btCollisionShape& child) { return child.getShapeType() == EMPTY_SHAPE_PROXYTYPE; }
+
+int number_for_hosts(const FlatCompound* flat, int child) {
+  return flat != nullptr ? flat->number_in_its_compound(child) : child;
+}
 
 }  // namespace
 
@@ -41,11 +46,14 @@ void children_near(const btCollisionObjectWrapper& wrapper, const ChildBox& loca
     return;
   }
   const auto& compound = static_cast<const btCompoundShape&>(shape);
+  const auto* const flat = dynamic_cast<const FlatCompound*>(&compound);
   const auto visit = [&](int i) {
     if (is_empty(*compound.getChildShape(i))) return;
     Child child{compound.getChildShape(i), pose * compound.getChildTransform(i), i, {}};
     child.box = box_of(*child.shape, child.pose);
-    if (!apart(child.box, world, reach)) children.push_back(child);
+    if (apart(child.box, world, reach)) return;
+    child.told_as = number_for_hosts(flat, i);
+    children.push_back(child);
   };
   const btVector3 extra(reach, reach, reach);
   for_each_child_meeting(compound, btDbvtVolume::FromMM(local.lower - extra, local.upper + extra), visit);
@@ -66,13 +74,14 @@ bool all_children(const btCollisionObjectWrapper& wrapper, const btCollisionShap
     return true;
   }
   const auto& compound = static_cast<const btCompoundShape&>(shape);
+  const auto* const flat = dynamic_cast<const FlatCompound*>(&compound);
   for (int i = 0; i < compound.getNumChildShapes(); ++i) {
     const btCollisionShape& child = *compound.getChildShape(i);
     if (is_empty(child)) continue;
     if (!child.isConvex()) return false;
     if (gCompoundChildShapePairCallback != nullptr && !gCompoundChildShapePairCallback(&other, &child)) continue;
     const btTransform place = pose * compound.getChildTransform(i);
-    if (is_finite(place)) children.push_back({&child, place, i, {}});
+    if (is_finite(place)) children.push_back({&child, place, i, {}, number_for_hosts(flat, i)});
   }
   return true;
 }

@@ -19,7 +19,8 @@ struct Child {
   const btCollisionShape* shape;
   btTransform pose;
   int index;
-  ChildBox box;  ///< in the world
+  ChildBox box;      ///< in the world
+  int told_as = -1;  ///< the child's number for hosts: of a flat compound's child, that in the compound that holds it
 };
 
 /// Of a shape as it stands, with what Bullet adds.

@@ -14,6 +14,7 @@
 #include "pair/solver_core.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "shapes/compound_children.hpp"
+#include "union/flat_wrapper.hpp"
 #include "union/pieces_in_result.hpp"
 
 namespace pd::detail {
@@ -51,14 +52,16 @@ class Query {
  public:
   Query(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, SolverCore& core,
         btDispatcher& dispatcher, btManifoldResult& result)
-      : a_(a),
-        b_(b),
-        core_(core),
+      : core_(core),
         dispatcher_(dispatcher),
         result_(result),
         manifold_(dispatcher, a.getCollisionObject(), b.getCollisionObject()),
         buffers_(core.buffers.lease()),
-        stamp_(core.next_stamp()) {
+        stamp_(core.next_stamp()),
+        flat_a_(a, core.flat_compounds, stamp_, memory_a_),
+        flat_b_(b, core.flat_compounds, stamp_, memory_b_),
+        a_(flat_a_.wrapper()),
+        b_(flat_b_.wrapper()) {
     buffers_->near.begin_pair(stamp_);
   }
 
@@ -156,14 +159,16 @@ class Query {
     dispatcher_.freeCollisionAlgorithm(algorithm);
   }
 
-  const btCollisionObjectWrapper& a_;
-  const btCollisionObjectWrapper& b_;
   SolverCore& core_;
   btDispatcher& dispatcher_;
   btManifoldResult& result_;
   ManifoldOfQuery manifold_;
   ThreadBufferPool::Lease buffers_;
   std::uint64_t stamp_;
+  FlatMemory memory_a_, memory_b_;
+  FlatWrapper flat_a_, flat_b_;
+  const btCollisionObjectWrapper& a_;
+  const btCollisionObjectWrapper& b_;
   NearOfBody near_a_, near_b_;
   std::array<std::shared_ptr<CachedShape>, 2> shapes_;
 };
@@ -177,6 +182,9 @@ void CompoundQuery::processCollision(const btCollisionObjectWrapper* a, const bt
     bullets_.process(a, b, info, result, Kind::table);
     return;
   }
+  const ChildBox box_a = box_of(*a->getCollisionShape(), a->getWorldTransform());
+  const ChildBox box_b = box_of(*b->getCollisionShape(), b->getWorldTransform());
+  if (apart(box_a, box_b, result->m_closestPointDistanceThreshold)) return;
   Query(*a, *b, core, *m_dispatcher, *result).ask(info);
 }
 

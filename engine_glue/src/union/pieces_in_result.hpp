@@ -17,14 +17,17 @@ namespace pd::detail {
 class PieceInResult {
  public:
   PieceInResult(btManifoldResult& result, const btCollisionObjectWrapper& piece)
+      : PieceInResult(result, piece, piece.m_index) {}
+  /// @param told_as  the piece's number for hosts
+  PieceInResult(btManifoldResult& result, const btCollisionObjectWrapper& piece, int told_as)
       : result_(result),
         first_(result.getBody0Internal() == piece.getCollisionObject()),
         before_(first_ ? result.getBody0Wrap() : result.getBody1Wrap()) {
     put(piece);
     if (first_) {
-      result.setShapeIdentifiersA(piece.m_partId, piece.m_index);
+      result.setShapeIdentifiersA(piece.m_partId, told_as);
     } else {
-      result.setShapeIdentifiersB(piece.m_partId, piece.m_index);
+      result.setShapeIdentifiersB(piece.m_partId, told_as);
     }
   }
   ~PieceInResult() { put(*before_); }
@@ -50,7 +53,7 @@ inline int part_of_child(const btCollisionObjectWrapper& body, const Child& chil
   return child.index < 0 ? body.m_partId : -1;
 }
 inline int index_of_child(const btCollisionObjectWrapper& body, const Child& child) {
-  return child.index < 0 ? body.m_index : child.index;
+  return child.index < 0 ? body.m_index : child.told_as;
 }
 
 /// The numbers of a piece of each body, in the result's order.
@@ -65,8 +68,8 @@ class ChildInResult {
  public:
   ChildInResult(btManifoldResult& result, const btCollisionObjectWrapper& body, const Child& child)
       : wrapper_(child.index < 0 ? body.m_parent : &body, child.shape, body.getCollisionObject(), child.pose,
-                 part_of_child(body, child), index_of_child(body, child)),
-        placed_(result, wrapper_) {}
+                 part_of_child(body, child), child.index < 0 ? body.m_index : child.index),
+        placed_(result, wrapper_, index_of_child(body, child)) {}
   [[nodiscard]] const btCollisionObjectWrapper& wrapper() const { return wrapper_; }
 
  private:

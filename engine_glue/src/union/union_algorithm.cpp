@@ -6,6 +6,7 @@
 
 #include "pair/bullets_stand_in.hpp"
 #include "pair/solver_core.hpp"
+#include "union/flat_wrapper.hpp"
 #include "union/mesh_contacts.hpp"
 
 namespace pd::detail {
@@ -25,6 +26,7 @@ struct UnionAlgorithm::State {
   PatchManifolds manifolds;
   Patches patches;
   BulletsStandIn bullets;
+  FlatMemory flat[2];  ///< of the question's a and b
   bool used = false;
 
   /// Fills `patches`. Trials that begin at one state take what the first one found: it is the longest, so that no point
@@ -94,7 +96,9 @@ void UnionAlgorithm::processCollision(const btCollisionObjectWrapper* a, const b
     SolverCore& core = s.world.core();
     const std::uint64_t stamp = std::exchange(s.used, true) ? s.world.stamp() : core.next_stamp();
     const btScalar threshold = first.getContactBreakingThreshold() + result->m_closestPointDistanceThreshold;
-    const UnionQuestion question{one, other, time_of(info), threshold, stamp, *result};
+    const FlatWrapper flat_one(one, core.flat_compounds, stamp, s.flat[0]);
+    const FlatWrapper flat_other(other, core.flat_compounds, stamp, s.flat[1]);
+    const UnionQuestion question{flat_one.wrapper(), flat_other.wrapper(), time_of(info), threshold, stamp, *result};
     if (s.find(question)) {
       s.bullets.release();
       s.contacts->replace(question, s.patches, s.manifolds);
