@@ -239,9 +239,11 @@ class Climb {
       case 2:
         x = std::ldexp(x, static_cast<int>(bits_() % 3) - 1);
         break;
-      case 3:
-        x *= 1 + std::ldexp(uniform() - 0.5, -static_cast<int>(bits_() % 50));
+      case 3: {
+        const int halvings = static_cast<int>(bits_() % 50);
+        x *= 1 + std::ldexp(uniform() - 0.5, -halvings);
         break;
+      }
       default:
         for (int k = 1 + static_cast<int>(bits_() % 4); k > 0; --k) x = std::nextafter(x, bits_() % 2 ? 1e300 : -1e300);
     }

@@ -119,7 +119,8 @@ void fill_with_compounds(World& w) {
     for (int k = 0; k < 8; ++k) {
       auto* const hull = w.shape<btConvexHullShape>();
       for (int i = 0; i < 24; ++i) {
-        hull->addPoint(place().normalized() * (btScalar(0.05) + btScalar(0.02) * number()), false);
+        const btScalar radius = btScalar(0.05) + btScalar(0.02) * number();
+        hull->addPoint(place().normalized() * radius, false);
       }
       hull->recalcLocalAabb();
       hull->setMargin(btScalar(0.001));
