@@ -125,29 +125,28 @@ TEST(ConvexDecomposition, CellsInSpaceAreCoveredExactly) {
 }
 
 /// The hull of an L reaches half a cell beyond it, in the middle of the notch's opening.
-/// A block with a square funnel through it. Its four walls meet in planes through pairs of edges, and no plane of a
-/// face parts them.
-TEST(ConvexDecomposition, AFunnelIsFourParts) {
-  Mesh funnel;
-  for (const auto& [half, z] : {std::pair{3.0, 0.0}, {1.0, 0.0}, {3.0, 2.0}, {2.0, 2.0}}) {
+/// A ring of four bars with mitred ends: they meet in planes through pairs of edges. Cut along planes of faces alone, the
+/// merged parts overlap each other.
+TEST(ConvexDecomposition, MitredBarsAreFourParts) {
+  Mesh ring;
+  for (const auto& [half, z] : {std::pair{2.0, 0.0}, {1.0, 1.0}, {1.0, 2.0}, {2.0, 3.0}}) {
     for (const auto& [x, y] : {std::pair{-half, -half}, {half, -half}, {half, half}, {-half, half}}) {
-      funnel.points.emplace_back(x, y, z);
+      ring.points.emplace_back(x, y, z);
     }
   }
   for (std::int32_t k = 0; k < 4; ++k) {
     const std::int32_t n = (k + 1) % 4;
-    funnel.add({k, n, 8 + n, 8 + k});            // outside
-    funnel.add({4 + n, 4 + k, 12 + k, 12 + n});  // the funnel
-    funnel.add({n, k, 4 + k, 4 + n});            // below
-    funnel.add({8 + k, 8 + n, 12 + n, 12 + k});  // above
+    for (std::int32_t level = 0; level < 12; level += 4) ring.add({level + n, level + k, level + 4 + k, level + 4 + n});
+    ring.add({k, n, 12 + n, 12 + k});
   }
+  const MeshSolid solid = solid_of(ring);
   for (const bool inside : {false, true}) {
-    const SolidDecomposition found = parts_of(solid_of(funnel), 1e-6, inside);
+    const SolidDecomposition found = parts_of(solid, 1e-6, inside);
     EXPECT_EQ(found.parts.parts().size(), 4U) << inside;
     EXPECT_TRUE(found.error_reached);
     EXPECT_LE(found.error, 1e-12);
     EXPECT_NEAR(found.parts_volume, found.solid_volume, 1e-12);
-    EXPECT_NEAR(found.solid_volume, 72 - 2.0 / 3 * (4 + 8 + 16), 1e-12);
+    EXPECT_NEAR(found.solid_volume, 48 - 4 - 2 * 28.0 / 3, 1e-12);
   }
 }
 

@@ -92,9 +92,9 @@ class PolygonDifference {
   /// depth() or, for another `leave`, escape_depth() and straight_escape_depth() of P and Q, each swept by the disc of
   /// its margin. The class is exact. For convex P and Q so is the depth, as above. Else the depth is upper, and upper -
   /// lower <= 1e-6 upper unless 20,000 boxes of placements do not suffice: the bracket is certified either way.
-  /// For another `leave`, and one convex polygon, the answer lies between those of two regular polygons of 8,192 corners
-  /// in place of the disc. This bracket is certified and some 1e-6 of the margins wide. It is wider where a passage is
-  /// as wide as Q within that. The first such question makes two differences, which are kept.
+  /// For another `leave`, and one convex polygon, the answer lies between those of two regular polygons of 8,192
+  /// corners in place of the disc. This bracket is certified and some 1e-6 of the margins wide. It is wider where a
+  /// passage is as wide as Q within that. The first such question makes two differences, which are kept.
   /// @return bad_value or non_finite for margins that are negative or not finite, out_of_range for a sum above 1e300;
   /// unsupported for another `leave` than first_exit where neither P nor Q is convex.
   [[nodiscard]] Expected<PolygonDepth> swept_depth(const Point2& placement, const PlanarMargins& margins,
