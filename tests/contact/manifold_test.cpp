@@ -273,8 +273,9 @@ TEST(Manifold, DeepestPairIsThePenetrationDepth) {
   for (int i = 0; i < 300; ++i) {
     const ConvexShape a = cloud(8 + i % 20);
     const ConvexShape b = i % 3 ? cloud(12) : ConvexShape::cylinder(1, 1, i % 2).value();
-    const Pose pa = pose(Vec3{normal(random), normal(random), normal(random)},
-                         Vec3{normal(random), normal(random), normal(random)}, normal(random));
+    const Vec3 place{normal(random), normal(random), normal(random)};
+    const Vec3 axis{normal(random), normal(random), normal(random)};
+    const Pose pa = pose(place, axis, normal(random));
     const Contact contact = touch(a, pa, b, Pose(), 0.05);
     const double signed_depth =
         contact.answer.contact == pd::ContactClass::separated ? -contact.answer.distance : contact.answer.depth;
@@ -299,8 +300,9 @@ TEST(Manifold, DeepestPointIsAsDeepAsTheBodies) {
   for (int round = 0; round < 2000; ++round) {
     const ConvexShape a = box(1, 0.7, 0.8), b = box(2, 1, 2);
     const double tilt = 1e-6 * place(random);
-    const Pose at = pose(Vec3{place(random), 1.69 + 0.02 * place(random), place(random)},
-                         Vec3{place(random), 1e-3, place(random)}, tilt);
+    const Vec3 centre{place(random), 1.69 + 0.02 * place(random), place(random)};
+    const Vec3 axis{place(random), 1e-3, place(random)};
+    const Pose at = pose(centre, axis, tilt);
     const Contact contact = touch(a, at, b, pose(Vec3::Zero()), round % 2 == 0 ? 0.0 : 0.02);
     if (contact.manifold.count == 0) continue;
     ++met;

@@ -46,7 +46,8 @@ std::vector<Vec3> sphere_points(int n, std::mt19937_64& random) {
 std::vector<Vec3> grid_points(std::mt19937_64& random, int n) {
   std::uniform_int_distribution<int> coordinate(-2, 2);
   std::vector<Vec3> points;
-  for (int i = 0; i < n; ++i) points.push_back(Vec3{coordinate(random), coordinate(random), coordinate(random)});
+  for (int i = 0; i < n; ++i)
+    points.push_back(Eigen::Vector3i{coordinate(random), coordinate(random), coordinate(random)}.cast<double>());
   return points;
 }
 
@@ -172,7 +173,7 @@ TEST(DirectionalDepth, GridBodiesAlongGridDirections) {
   for (int round = 0; round < rounds && !HasFailure(); ++round) {
     SCOPED_TRACE(round);
     const Bodies bodies{grid_points(random, 2 + round % 8), Pose(), grid_points(random, 4 + round % 7), Pose()};
-    Vec3 direction{coordinate(random), coordinate(random), coordinate(random)};
+    Vec3 direction = Eigen::Vector3i{coordinate(random), coordinate(random), coordinate(random)}.cast<double>();
     if (direction.isZero(0)) direction = Vec3::UnitZ();
     check(bodies, direction, scratch, overlapping, false);
   }
@@ -326,7 +327,7 @@ TEST(DifferenceQueries, SupportsAreExactAndLowest) {
   std::uniform_int_distribution<int> coordinate(-3, 3);
   for (int round = 0; round < 300 && !HasFailure(); ++round) {
     const Bodies bodies{grid_points(random, 1 + round % 12), Pose(), grid_points(random, 1 + round % 9), Pose()};
-    Vec3 d{coordinate(random), coordinate(random), coordinate(random)};
+    Vec3 d = Eigen::Vector3i{coordinate(random), coordinate(random), coordinate(random)}.cast<double>();
     if (d.isZero(0)) d = Vec3::UnitX();
     const auto support = support_of_difference(bodies.posed_a(), bodies.posed_b(), d);
     const ConvexPolytope& a = *bodies.a.polytope();
@@ -356,7 +357,7 @@ TEST(DifferenceQueries, PointClassesAreExact) {
     const Vec3 far = round % 2 ? Vec3(1e9 + 0.1, -3e7 + 0.3, 1e-9) : Vec3(Vec3::Zero());
     const Pose pose = *Pose::from_matrix(Mat3::Identity(), far);
     const Bodies bodies{grid_points(random, 1 + round % 9), pose, grid_points(random, 1 + round % 7), pose};
-    const Vec3 x{coordinate(random), coordinate(random), coordinate(random)};
+    const Vec3 x = Eigen::Vector3i{coordinate(random), coordinate(random), coordinate(random)}.cast<double>();
     const auto found = point_in_difference(bodies.posed_a(), bodies.posed_b(), x, scratch);
     const oracle::Body body_a(bodies.points_a), body_b(bodies.points_b);
     const oracle::ExactPair exact(body_a, bodies.pose_a, body_b, bodies.pose_b, x);
@@ -389,8 +390,8 @@ TEST(DifferenceQueries, LinesAgreeWithPointClasses) {
   for (int round = 0; round < 600 && !HasFailure(); ++round) {
     SCOPED_TRACE(round);
     const Bodies bodies{grid_points(random, 2 + round % 8), Pose(), grid_points(random, 4 + round % 7), Pose()};
-    const Vec3 x{coordinate(random), coordinate(random), coordinate(random)};
-    Vec3 d{coordinate(random), coordinate(random), coordinate(random)};
+    const Vec3 x = Eigen::Vector3i{coordinate(random), coordinate(random), coordinate(random)}.cast<double>();
+    Vec3 d = Eigen::Vector3i{coordinate(random), coordinate(random), coordinate(random)}.cast<double>();
     if (d.isZero(0)) d = Vec3::UnitX();
     const LineCrossing line = *line_in_difference(bodies.posed_a(), bodies.posed_b(), x, d);
     const Vec3 unit = d.normalized();

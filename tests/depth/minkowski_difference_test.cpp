@@ -103,7 +103,7 @@ ConvexPolytope grid_body(std::mt19937_64& random, int constant) {
   std::vector<Vec3> points;
   const int n = 1 + static_cast<int>(random() % 9);
   for (int i = 0; i < n; ++i) {
-    Vec3 p{coordinate(random), coordinate(random), coordinate(random)};
+    Vec3 p = Eigen::Vector3i{coordinate(random), coordinate(random), coordinate(random)}.cast<double>();
     if (constant < 3) p[constant] = 1;
     points.push_back(p);
   }

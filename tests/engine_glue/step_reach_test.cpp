@@ -167,7 +167,8 @@ TEST(StepReach, NothingFallsThroughTheGap) {
   for (int i = 0; i < 400; ++i) {
     Hovering falling(static_cast<btScalar>(share(random)) * threshold(), btCollisionObject::CF_STATIC_OBJECT,
                      i % 2 == 0 ? Kind::box : Kind::compound);
-    falling.body.setLinearVelocity(btVector3(0, static_cast<btScalar>(-4 * share(random) * share(random)), 0));
+    const double shares[] = {share(random), share(random)};
+    falling.body.setLinearVelocity(btVector3(0, static_cast<btScalar>(-4 * shares[0] * shares[1]), 0));
     btScalar deepest = 0;
     for (int k = 0; k < 20; ++k) {
       falling.step();

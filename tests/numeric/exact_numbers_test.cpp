@@ -110,8 +110,9 @@ TEST(Dyadic, RoundsBelowTheSmallestNormal) {
 TEST(DoubleDouble, ProductAndQuotientKeepAHundredBits) {
   Numbers next(20);
   for (int i = 0; i < 500; ++i) {
-    const DoubleDouble a = pd::detail::two_product(next(), next());
-    const DoubleDouble b = pd::detail::two_sum(next(), next());
+    const double factors[] = {next(), next()}, summands[] = {next(), next()};
+    const DoubleDouble a = pd::detail::two_product(factors[0], factors[1]);
+    const DoubleDouble b = pd::detail::two_sum(summands[0], summands[1]);
     const auto value = [](const DoubleDouble& x) { return rational(x.hi) + rational(x.lo); };
     const Rational bound = Rational(1) / (boost::multiprecision::cpp_int(1) << 100);
     const Rational product = value(a) * value(b);

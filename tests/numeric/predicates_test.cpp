@@ -114,8 +114,8 @@ TEST(Predicates, AgreeWithRationalsNearDegeneracy) {
     // Four points of a plane with small integer directions, scaled, shifted, and each coordinate nudged by a few ulp.
     const double about_one = 1.0 + 0.1 * small(random);
     const double scale = std::ldexp(about_one, exponent(random));
-    const Vec3 u{small(random), small(random), small(random)};
-    const Vec3 v{small(random), small(random), small(random)};
+    const Vec3 u = Eigen::Vector3i{small(random), small(random), small(random)}.cast<double>();
+    const Vec3 v = Eigen::Vector3i{small(random), small(random), small(random)}.cast<double>();
     const Vec3 shift{0.1 * small(random), 0.3 * small(random), 0.7 * small(random)};
     Vec3 p[4];
     for (Vec3& q : p) {

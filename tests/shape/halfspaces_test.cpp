@@ -87,7 +87,8 @@ TEST(Halfspaces, TheFacetsOfAHullGiveItsVerticesBack) {
   std::uniform_int_distribution<int> whole(-8, 8);
   for (int round = 0; round < 60; ++round) {
     std::vector<Vec3> points;
-    for (int i = 0; i < 4 + round; ++i) points.push_back({whole(random), whole(random), whole(random)});
+    for (int i = 0; i < 4 + round; ++i)
+      points.push_back(Eigen::Vector3i{whole(random), whole(random), whole(random)}.cast<double>());
     const auto hull = pd::ConvexPolytope::from_points(points);
     if (!hull || hull->affine_dimension() < 3) continue;
     Planes planes;

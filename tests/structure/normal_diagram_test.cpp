@@ -48,10 +48,10 @@ TEST(NormalDiagram, LocatesTheLowestExtremeVertex) {
   for (int round = 0; round < 500; ++round) {
     std::vector<Vec3> points;
     for (int i = 0; i < 1 + round % 30; ++i) {
-      points.push_back(Vec3{coordinate(random), coordinate(random), coordinate(random)});
+      points.push_back(Eigen::Vector3i{coordinate(random), coordinate(random), coordinate(random)}.cast<double>());
     }
     const ConvexPolytope polytope = *ConvexPolytope::from_points(points);
-    Vec3 d{coordinate(random), coordinate(random), coordinate(random)};
+    Vec3 d = Eigen::Vector3i{coordinate(random), coordinate(random), coordinate(random)}.cast<double>();
     if (d.isZero(0)) d = Vec3(0, 0, 1e-300);
     int expected = 0;
     for (int v = 1; v < polytope.num_vertices(); ++v) {

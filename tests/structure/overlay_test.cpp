@@ -287,7 +287,7 @@ ConvexPolytope grid_body(std::mt19937_64& random, int dimension) {
     const int n = dimension + 1 + static_cast<int>(random() % 6);
     const int turned = static_cast<int>(random() % 3);
     for (int i = 0; i < n; ++i) {
-      Vec3 p{coordinate(random), coordinate(random), coordinate(random)};
+      Vec3 p = Eigen::Vector3i{coordinate(random), coordinate(random), coordinate(random)}.cast<double>();
       for (int k = dimension; k < 3; ++k) p[(k + turned) % 3] = 1;
       points.push_back(p);
     }

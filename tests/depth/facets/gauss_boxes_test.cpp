@@ -197,7 +197,9 @@ TEST(BoxNearFacets, NoFacetLeftOutIsNearer) {
 TEST(AlignedBoxes, TheirDepthIsExact) {
   std::mt19937_64 random(10);
   std::uniform_int_distribution<int> eighths(1, 8), place(-9, 9), order(0, 5), side(0, 1);
-  const auto half = [&]() -> Vec3 { return Vec3{eighths(random), eighths(random), eighths(random)} / 8; };
+  const auto half = [&]() -> Vec3 {
+    return Eigen::Vector3i{eighths(random), eighths(random), eighths(random)}.cast<double>() / 8;
+  };
   const auto turn = [&] {
     Mat3 m = Mat3::Zero();
     int axes[3] = {0, 1, 2};
@@ -213,7 +215,8 @@ TEST(AlignedBoxes, TheirDepthIsExact) {
     const Vec3 half_a = half(), half_b = half();
     const ConvexShape a(*ConvexPolytope::box(half_a)), b(*ConvexPolytope::box(half_b));
     const Pose pose_a = *Pose::from_matrix(turn(), Vec3::Zero());
-    const Pose pose_b = *Pose::from_matrix(turn(), Vec3{place(random), place(random), place(random)} / 8);
+    const Vec3 centre_b = Eigen::Vector3i{place(random), place(random), place(random)}.cast<double>() / 8;
+    const Pose pose_b = *Pose::from_matrix(turn(), centre_b);
     const Vec3 reach = (pose_a.rotation() * half_a).cwiseAbs() + (pose_b.rotation() * half_b).cwiseAbs();
     const Vec3 sides[2] = {reach + pose_b.translation(), reach - pose_b.translation()};
     const double least = std::min(sides[0].minCoeff(), sides[1].minCoeff());
