@@ -1,5 +1,7 @@
 #include "world/installation.hpp"
 
+#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
+
 #include <bit>
 #include <cstdint>
 #include <memory>
