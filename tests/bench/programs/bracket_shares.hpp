@@ -13,6 +13,7 @@
 #include "bench/programs/real.hpp"
 #include "depth/facets/gauss_sat_boxes.hpp"
 #include "depth/features/nearest_of_segments.hpp"
+#include "depth/pair/slender_on_box.hpp"
 #include "pd/shape/convex_polytope.hpp"
 #include "pd/shape/pose.hpp"
 #include "shape/hull/affine_frame.hpp"
@@ -141,6 +142,30 @@ inline double segments_share(const Numbers& x) {
   const Real truth = true_distance({true_place(*pose_a, a->vertex(0)), true_place(*pose_a, a->vertex(1)),
                                     true_place(*pose_b, b->vertex(0)), true_place(*pose_b, b->vertex(1))});
   return share_of_bracket(truth, cores.lower, cores.upper);
+}
+
+/// A segment before one face of a box: its ends, half extents, poses, 23 numbers in all.
+inline double slender_on_box_share(const Numbers& x) {
+  const auto body = segment_of(x, 0);
+  const auto box = ConvexPolytope::box(Vec3(x[6], x[7], x[8]).cwiseAbs());
+  const auto pose_body = pose_of(x, 9), pose_box = pose_of(x, 16);
+  if (!body || !box || !pose_body || !pose_box) return 0;
+  PenetrationDepth out;
+  const DepthSettings any{.contact_tolerance = HUGE_VAL};
+  if (!detail::answer_slender_on_box({&*body, &*box, &*pose_body, &*pose_box, {}}, any, out)) return 0;
+  const auto columns = true_columns(*pose_box);
+  Real height = -1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (const int side : {1, -1}) {
+      Real least = HUGE_VAL;
+      for (int v = 0; v < body->num_vertices(); ++v) {
+        const RealVector place = true_place(*pose_body, body->vertex(v)) - real(pose_box->translation());
+        least = std::min<Real>(least, side * dot(columns[k], place));
+      }
+      height = std::max<Real>(height, least - box->vertex(7)[static_cast<Eigen::Index>(k)]);
+    }
+  }
+  return share_of_bracket(height, out.distance_lower, out.distance_upper);
 }
 
 /// Heights of a fifth point over the faces of a tetrahedron.

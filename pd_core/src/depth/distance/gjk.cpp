@@ -76,6 +76,8 @@ class DistanceSearch {
   ClosestPoint& r;
 
  private:
+  static constexpr bool kIsOfPolytopes = std::is_same_v<Difference, PolytopeDifference>;
+
   bool is_narrow(double height, double largest) {
     r.lower = height - error_.lower;
     return r.lower > 0 && (r.upper - r.lower <= width_.limit(largest) || width_.is_within(relative_, r.lower, r.upper));
@@ -86,6 +88,7 @@ class DistanceSearch {
     if (seen_far_side_ || is_narrow(height, largest_) || !is_narrow(height, difference_.reach())) return;
     const Vec3 centre = difference_.centre();
     largest_ = std::max(largest_, centre.cwiseAbs().maxCoeff());
+    if constexpr (kIsOfPolytopes) largest_ = std::max(largest_, difference_.coordinate_of_ends());
     if (is_narrow(height, largest_)) return;
     see(difference_.support(centre, nullptr));
     ++support_calls_;
@@ -93,7 +96,7 @@ class DistanceSearch {
   }
 
   [[nodiscard]] bool may_be_farther(double height) const {
-    return std::is_same_v<Difference, PolytopeDifference> && length_ - height <= kSeenGap * difference_.reach();
+    return kIsOfPolytopes && length_ - height <= kSeenGap * difference_.reach();
   }
 
   const Difference& difference_;
