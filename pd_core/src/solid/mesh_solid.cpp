@@ -187,8 +187,8 @@ std::optional<Error> MeshSolid::arrange() {
       sides.push_back({low, high, static_cast<std::int32_t>(t), static_cast<std::int32_t>(k)});
     }
   }
-  std::sort(sides.begin(), sides.end(), [](const EdgeSide& x, const EdgeSide& y) {
-    return std::tie(x.low, x.high, x.triangle) < std::tie(y.low, y.high, y.triangle);
+  detail::sort_edges(sides, [](const EdgeSide& x, const EdgeSide& y) {
+    return std::tie(x.high, x.triangle) < std::tie(y.high, y.triangle);
   });
   DisjointSets shells(triangles_.size());
   for (std::size_t i = 0; i < sides.size(); i += 2) {

@@ -81,18 +81,26 @@ Triangle corners(std::span<const Vec3> points, const FaceTriangle& t) {
   return {point(0), point(1), point(2)};
 }
 
-/// The triangle so turned that its vertices in `shared` come first.
+bool has_vertex(const FaceTriangle& t, std::int32_t v) {
+  return v == t.vertices[0] || v == t.vertices[1] || v == t.vertices[2];
+}
+
+/// The triangle with the vertices that the other has, too, first; the order is kept else. Nothing is allocated, since
+/// this is asked for millions of pairs.
 FaceTriangle shared_first(FaceTriangle t, const FaceTriangle& other) {
-  std::stable_partition(t.vertices.begin(), t.vertices.end(), [&](std::int32_t v) {
-    return std::find(other.vertices.begin(), other.vertices.end(), v) != other.vertices.end();
-  });
+  const std::array<std::int32_t, 3> vertices = t.vertices;
+  std::size_t at = 0;
+  for (const bool shared : {true, false}) {
+    for (const std::int32_t v : vertices) {
+      if (has_vertex(other, v) == shared) t.vertices[at++] = v;
+    }
+  }
   return t;
 }
 
 int count_shared(const FaceTriangle& s, const FaceTriangle& t) {
   int shared = 0;
-  for (const std::int32_t v : s.vertices)
-    shared += std::find(t.vertices.begin(), t.vertices.end(), v) != t.vertices.end();
+  for (const std::int32_t v : s.vertices) shared += has_vertex(t, v);
   return shared;
 }
 

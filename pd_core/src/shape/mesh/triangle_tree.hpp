@@ -42,7 +42,11 @@ class TriangleTree {
   [[nodiscard]] std::vector<Node> take_nodes() && { return std::move(nodes_); }
 
  private:
-  std::int32_t build(std::span<const TriangleBox> boxes, std::int32_t first, std::int32_t last);
+  struct Item {
+    TriangleBox box;
+    std::int32_t triangle;
+  };
+  std::int32_t build(std::span<Item> items, std::int32_t first, std::int32_t last);
 
   std::vector<std::int32_t> order_;
   std::vector<Node> nodes_;

@@ -61,9 +61,8 @@ std::vector<EdgeUse> sorted_edges(const WeldedMesh& mesh) {
     const auto [low, high] = std::minmax({mesh.vertex(c), mesh.vertex(mesh.next(c))});
     uses.push_back({low, high, c});
   }
-  std::sort(uses.begin(), uses.end(), [](const EdgeUse& a, const EdgeUse& b) {
-    return std::tie(a.low, a.high, a.corner) < std::tie(b.low, b.high, b.corner);
-  });
+  sort_edges(
+      uses, [](const EdgeUse& a, const EdgeUse& b) { return std::tie(a.high, a.corner) < std::tie(b.high, b.corner); });
   return uses;
 }
 

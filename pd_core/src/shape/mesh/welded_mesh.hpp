@@ -2,8 +2,11 @@
 /// A mesh whose equal points are one vertex, and its edges with all faces that use them.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "pd/shape/mesh_check.hpp"
@@ -39,6 +42,28 @@ struct WeldedMesh {
 
 /// Faces of fewer than three different vertices become empty loops: their edges cancel each other.
 [[nodiscard]] WeldedMesh weld(const MeshView& mesh);
+
+/// Sorts sides of edges by their lower vertex, and those of one lower vertex by `less`. Most vertices have few edges,
+/// so that buckets are quicker than sorting the whole.
+template <class EdgeSide, class Less>
+void sort_edges(std::vector<EdgeSide>& sides, const Less& less) {
+  std::int32_t vertices = 0;
+  for (const EdgeSide& side : sides) vertices = std::max(vertices, side.low + 1);
+  std::vector<std::size_t> ends(static_cast<std::size_t>(vertices) + 1, 0);
+  for (const EdgeSide& side : sides) ++ends[static_cast<std::size_t>(side.low) + 1];
+  for (std::size_t v = 1; v < ends.size(); ++v) ends[v] += ends[v - 1];
+  std::vector<EdgeSide> sorted(sides.size());
+  for (const EdgeSide& side : sides) sorted[ends[static_cast<std::size_t>(side.low)]++] = side;
+  std::size_t begin = 0;
+  for (const std::size_t end : ends) {
+    if (end > begin + 1) {
+      std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(begin), sorted.begin() + static_cast<std::ptrdiff_t>(end),
+                less);
+    }
+    begin = std::max(begin, end);
+  }
+  sides = std::move(sorted);
+}
 
 /// A face's way along an edge: from the corner to the next one of its loop.
 struct EdgeUse {
