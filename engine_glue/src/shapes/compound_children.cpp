@@ -5,6 +5,7 @@
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 
 #include <algorithm>
+#include <typeinfo>
 
 #include "pd/bullet/scalar.hpp"
 #include "shapes/child_tree.hpp"
@@ -16,6 +17,10 @@ namespace {
 
 /// Importers put a `btEmptyShape` where a link has nothing to collide with.
 bool is_empty(const btCollisionShape& child) { return child.getShapeType() == EMPTY_SHAPE_PROXYTYPE; }
+
+const FlatCompound* as_flat(const btCompoundShape& compound) {
+  return typeid(compound) == typeid(FlatCompound) ? static_cast<const FlatCompound*>(&compound) : nullptr;
+}
 
 int number_for_hosts(const FlatCompound* flat, int child) {
   return flat != nullptr ? flat->number_in_its_compound(child) : child;
@@ -46,7 +51,7 @@ void children_near(const btCollisionObjectWrapper& wrapper, const ChildBox& loca
     return;
   }
   const auto& compound = static_cast<const btCompoundShape&>(shape);
-  const auto* const flat = dynamic_cast<const FlatCompound*>(&compound);
+  const FlatCompound* const flat = as_flat(compound);
   const auto visit = [&](int i) {
     if (is_empty(*compound.getChildShape(i))) return;
     Child child{compound.getChildShape(i), pose * compound.getChildTransform(i), i, {}};
@@ -74,7 +79,7 @@ bool all_children(const btCollisionObjectWrapper& wrapper, const btCollisionShap
     return true;
   }
   const auto& compound = static_cast<const btCompoundShape&>(shape);
-  const auto* const flat = dynamic_cast<const FlatCompound*>(&compound);
+  const FlatCompound* const flat = as_flat(compound);
   for (int i = 0; i < compound.getNumChildShapes(); ++i) {
     const btCollisionShape& child = *compound.getChildShape(i);
     if (is_empty(child)) continue;

@@ -41,6 +41,15 @@ class ManifoldOfQuery {
   btPersistentManifold& manifold_;
 };
 
+/// True if no point of one box is farther than that from any point of the other. Then it need not be asked whether the
+/// bodies in them are.
+bool lie_within(const ChildBox& a, const ChildBox& b, double reach) {
+  btVector3 lower = a.lower, upper = a.upper;
+  lower.setMin(b.lower);
+  upper.setMax(b.upper);
+  return static_cast<double>((upper - lower).length2()) <= reach * reach;
+}
+
 /// The near children of a body, and what those were converted to that have been asked.
 struct NearOfBody {
   std::vector<Child> children;
@@ -121,7 +130,9 @@ class Query {
                              .shapes = shapes_,
                              .stamp = stamp_,
                              .corners = {true, is_part(pair.a()), is_part(pair.b())},
-                             .beyond = asked_reach,
+                             .beyond = lie_within(near_a_.children[i].box, near_b_.children[j].box, asked_reach)
+                                           ? kAnyDistance
+                                           : asked_reach,
                              .shapes_current = true};
     PairAnswer answer;
     ContactManifold points;
