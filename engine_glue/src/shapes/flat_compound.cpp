@@ -1,5 +1,7 @@
 #include "shapes/flat_compound.hpp"
 
+#include <BulletCollision/BroadphaseCollision/btDbvt.h>
+
 #include <algorithm>
 #include <mutex>
 
