@@ -1,6 +1,6 @@
 /// @file
-/// Cylinders and cones in polytopes: against a sweep of directions, with bodies that lie flush on each other, and points
-/// that lie in both bodies.
+/// Cylinders and cones in polytopes: against a sweep of directions, with bodies that lie flush on each other, and
+/// points that lie in both bodies.
 #include <gtest/gtest.h>
 
 #include <algorithm>
