@@ -125,8 +125,8 @@ TEST(ConvexDecomposition, CellsInSpaceAreCoveredExactly) {
 }
 
 /// The hull of an L reaches half a cell beyond it, in the middle of the notch's opening.
-/// A ring of four bars with mitred ends: they meet in planes through pairs of edges. Cut along planes of faces alone, the
-/// merged parts overlap each other.
+/// A ring of four bars with mitred ends: they meet in planes through pairs of edges. Cut along planes of faces alone,
+/// the merged parts overlap each other.
 TEST(ConvexDecomposition, MitredBarsAreFourParts) {
   Mesh ring;
   for (const auto& [half, z] : {std::pair{2.0, 0.0}, {1.0, 1.0}, {1.0, 2.0}, {2.0, 3.0}}) {

@@ -222,17 +222,27 @@ class SeatSearch {
 
   /// A can only move to the side of the normal, or along the plane.
   void keep_side(const Dyadic3& normal) {
+    if (!add_if_new(sides_, normal, true)) return;
     std::erase_if(sectors_, [&](detail::DirectionSector& sector) { return !sector.cut(normal); });
   }
 
-  void add_plane(const Dyadic3& normal) {
+  void add_plane(const Dyadic3& normal) { (void)add_if_new(planes_, normal, false); }
+
+  struct Plane {
+    Dyadic3 normal;
+    Vec3 unit;
+  };
+  /// Adds a plane to the list, and tells if it was not there. @param one_way  the opposite normal is another plane
+  static bool add_if_new(std::vector<Plane>& list, const Dyadic3& normal, bool one_way) {
     const Vec3 unit = detail::rounded_unit(normal);
-    for (const Plane& plane : planes_) {
-      if (std::abs(plane.unit.dot(unit)) < 1 - 0x1p-40) continue;
+    for (const Plane& plane : list) {
+      const double share = plane.unit.dot(unit);
+      if ((one_way ? share : std::abs(share)) < 1 - 0x1p-40) continue;
       const Dyadic3 turn = cross(plane.normal, normal);
-      if (turn.x.sign() == 0 && turn.y.sign() == 0 && turn.z.sign() == 0) return;
+      if (turn.x.sign() == 0 && turn.y.sign() == 0 && turn.z.sign() == 0) return false;
     }
-    planes_.push_back({normal, unit});
+    list.push_back({normal, unit});
+    return true;
   }
 
   /// @param forbidden  a direction that is known to be, if the sector holds one
@@ -271,14 +281,10 @@ class SeatSearch {
     return way;
   }
 
-  struct Plane {
-    Dyadic3 normal;
-    Vec3 unit;
-  };
-
   const PosedSolid &a_, &b_;
   PosedSolids solids_;
   std::vector<detail::DirectionSector> sectors_;  ///< that single contacts leave open
+  std::vector<Plane> sides_;                      ///< by which sectors were cut
   std::vector<Plane> planes_;                     ///< at which a sector may end
   double small_ = kFar;
   bool is_unclear_ = false;
