@@ -37,7 +37,7 @@ std::vector<Vec3> grid_points(std::mt19937_64& random) {
   const int n = 1 + static_cast<int>(random() % 9);
   const int constant = static_cast<int>(random() % 5);
   for (int i = 0; i < n; ++i) {
-    Vec3 p{coordinate(random), coordinate(random), coordinate(random)};
+    Vec3 p = Eigen::Vector3i{coordinate(random), coordinate(random), coordinate(random)}.cast<double>();
     if (constant < 3) p[constant] = 1;
     points.push_back(0.5 * p);
   }
