@@ -77,8 +77,13 @@ std::vector<MeshGroup> surfaces_of(const MeshGroup& group) {
 bool has_parts(const MeshPoints& mesh) {
   const std::vector<std::int32_t>& groups = mesh.faces.groups;
   if (std::adjacent_find(groups.begin(), groups.end(), std::not_equal_to<>()) != groups.end()) return true;
-  const auto surfaces = connected_surfaces({mesh.points, mesh.faces.offsets, mesh.faces.corners});
-  return std::any_of(surfaces.begin(), surfaces.end(), [](std::int32_t surface) { return surface > 0; });
+  std::map<std::int32_t, std::int64_t> faces_of;
+  for (const std::int32_t surface : connected_surfaces({mesh.points, mesh.faces.offsets, mesh.faces.corners})) {
+    if (surface >= 0) ++faces_of[surface];
+  }
+  constexpr std::int64_t kFewestFaces = 4;  // a tetrahedron's; fewer bound no part
+  return faces_of.size() > 1 && std::all_of(faces_of.begin(), faces_of.end(),
+                                            [](const auto& counted) { return counted.second >= kFewestFaces; });
 }
 
 }  // namespace pd::query

@@ -23,7 +23,7 @@ struct MeshGroup {
 /// The connected surfaces of a group, "part 2 (\"lid\"), surface 0" and so on.
 [[nodiscard]] std::vector<MeshGroup> surfaces_of(const MeshGroup& group);
 
-/// True if a mesh has several groups or several connected surfaces.
+/// True if a mesh has several groups, or several connected surfaces of enough faces each to bound a part.
 [[nodiscard]] bool has_parts(const MeshPoints& mesh);
 
 }  // namespace pd::query

@@ -130,6 +130,9 @@ TEST_F(MeshDoors, SurfacesThatCrossAreParts) {
     EXPECT_EQ(refused.at("code"), "inside_out");
     expect_words(refused.at("message"), {"part 0: 1 of its 2 connected surfaces"});
   }
+  // A face that stands there twice is no part.
+  write("twice.obj", std::string(kAngle) + "f 6 1 7 12\n");
+  EXPECT_EQ(run("depth twice.obj cube.obj").err.find("parts"), std::string::npos);
   // A flat part is named as flat.
   const std::string flat = write("flat.obj", foot + "o flat\nv 5 0 0\nv 6 0 0\nv 5 1 0\nf 9 10 11\nf 10 9 11\n");
   expect_words(answer(depth_line(mesh(flat, parts), mesh(cube_), pose)).at("error").at("message"),
