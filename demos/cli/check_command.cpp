@@ -14,12 +14,12 @@
 #include "commands.hpp"
 #include "mesh/hull_note.hpp"
 #include "mesh/mesh_file.hpp"
-#include "mesh/mesh_groups.hpp"
 #include "options.hpp"
 #include "pd/shape/convex_polytope.hpp"
 #include "pd/shape/mesh_solid.hpp"
 #include "protocol/line/json_writer.hpp"
 #include "protocol/line/limits.hpp"
+#include "protocol/solid_reader.hpp"
 #include "support/complain.hpp"
 #include "support/printable.hpp"
 #include "support/refusal.hpp"
@@ -173,7 +173,7 @@ std::string queries_in_words(const CheckedMesh& checked) {
       break;
   }
   const bool turns = !fault_of_solid(checked.report, true) && checked.report.crossings_searched;
-  const bool parts = checked.report.closed() && checked.report.oriented() && query::has_parts(checked.mesh);
+  const bool parts = query::answers_as_parts(checked.mesh, {});
   return "refuse the file (" + refused_as(checked) +
          "): " + (turns ? "turn the faces, by \"turn_faces\":true in a line of `pdepth query`" : "mend the mesh") +
          (parts ? "; `pdepth depth --parts`, or \"as\":\"parts\", asks for the union of its parts" : "") + "; " +

@@ -175,7 +175,7 @@ void print_statistics(std::string_view method, const Statistics& statistics, std
   fmt::print("\n");
 }
 
-void print_answer(const PenetrationDepth& result) {
+void print_answer(const PenetrationDepth& result, std::string_view touching = "a way out for A") {
   switch (result.contact) {
     case ContactClass::overlapping:
       print_row("depth", in_full(result.depth) + (result.bracket_reached ? "" : "  at most; the bracket is wide"));
@@ -185,7 +185,7 @@ void print_answer(const PenetrationDepth& result) {
       break;
     case ContactClass::touching:
       print_row("depth", "0, exactly");
-      print_row("direction", in_words(result.normal) + "  a way out for A");
+      print_row("direction", fmt::format("{}  {}", in_words(result.normal), touching));
       break;
     case ContactClass::separated:
       print_row("distance", in_full(result.distance));
@@ -321,7 +321,7 @@ void print_solids(const DepthArguments& arguments, const SolidBody& a, const Sol
   print_body("A", arguments.file_a, a);
   print_body("B", arguments.file_b, b);
   print_sentence("A and B", result.contact);
-  print_answer(result);
+  print_answer(result, "across a place where they touch, towards A");
   if (fits_exactly) print_row("seat", "A fits exactly: it can only slide, if it can move at all");
   if (result.face_a >= 0 && result.face_b >= 0) {
     print_row("of A", fmt::format("face {}", result.face_a));

@@ -17,6 +17,8 @@ bool is_mesh(const Node& node) {
   return type != node.json().end() && *type == "mesh";
 }
 
+MeshView view_of(const MeshPoints& mesh) { return {mesh.points, mesh.faces.offsets, mesh.faces.corners}; }
+
 /// "faces 3 and 5 stand in lines 12 and 14"
 std::string lines_of(const MeshFinding& finding, const MeshFaces& faces) {
   std::string words;
@@ -42,8 +44,7 @@ MeshFinding as_in_file(MeshFinding finding, const MeshPoints& mesh) {
   const auto hull = ConvexPolytope::from_points(mesh.points);
   const bool flat = hull && hull->affine_dimension() < 3;
   std::string way_out = inside_out ? "ask for the mesh turned (" + wish.turn_words + ")" : "mend the mesh";
-  const bool several = finding.fault == MeshFault::self_crossing || finding.fault == MeshFault::not_manifold;
-  if (several && !flat && !wish.parts_words.empty() && has_parts(mesh)) {
+  if (!wish.parts_words.empty() && answers_as_parts(mesh, wish)) {
     way_out += ", ask for the union of its parts (" + wish.parts_words + ")";
   }
   refuse(to_string(finding.fault),
@@ -56,7 +57,7 @@ MeshFinding as_in_file(MeshFinding finding, const MeshPoints& mesh) {
 }  // namespace
 
 MeshBody body_of_mesh(MeshPoints mesh, const std::string& name, const SolidWish& wish) {
-  const MeshView view{mesh.points, mesh.faces.offsets, mesh.faces.corners};
+  const MeshView view = view_of(mesh);
   const auto hull = [&](MeshAs as) {
     return MeshBody{nullptr, std::make_shared<const NamedShape>(hull_of_mesh(std::move(mesh), name, as))};
   };
@@ -175,8 +176,12 @@ std::vector<NamedShape> exact_parts(const MeshSolid& solid, const std::string& n
   const auto parts = SolidParts::from_solid(solid);
   if (!parts) refuse(to_string(parts.error().code), name + parts.error().message + way_out, "");
   if (!parts->exact()) {
-    refuse("unsupported",
-           name + "this query needs the solid as convex parts, whose corners no doubles hold here" + way_out, "");
+    refuse(
+        "unsupported",
+        name +
+            "this query needs the solid as convex parts, and those along its faces have corners that no doubles hold" +
+            way_out,
+        "");
   }
   std::vector<NamedShape> shapes;
   for (const Compound::Part& part : parts->inner().parts()) shapes.push_back(without_ids(part.shape));
@@ -202,32 +207,47 @@ double extent_of(const MeshPoints& mesh) {
   return (high - low).maxCoeff();
 }
 
+/// What the precision of a part is a share of: the file's size, whose text is rounded in one place, and at most ten
+/// times the part's own, so that a small part keeps its notches beside a large one.
+double precision_extent(const MeshPoints& part, const MeshPoints& file) {
+  constexpr double kMost = 10;
+  return std::min(extent_of(file), kMost * extent_of(part));
+}
+
 bool bounds_solid(const MeshPoints& mesh, const SolidWish& wish) {
-  const MeshView view{mesh.points, mesh.faces.offsets, mesh.faces.corners};
+  const MeshView view = view_of(mesh);
   const auto report = check_mesh(view, {.extent = wish.extent});
   return report && MeshSolid::from_checked(view, *report, {.turn_faces = wish.turn_faces}).has_value();
 }
 
-/// The group, or its surfaces where it bounds no solid as a whole.
-/// @throws Refusal inside_out where some of the surfaces show their insides and some do not: a surface that crosses
-/// others may be a cavity, whose faces must not be turned.
-std::vector<MeshGroup> bodies_of(const MeshGroup& group, const std::string& name, const SolidWish& wish) {
+/// The group, or its surfaces where it bounds no solid as a whole and each of them is closed.
+std::vector<MeshGroup> bodies_of(const MeshGroup& group, const SolidWish& wish) {
   std::vector<MeshGroup> surfaces = surfaces_of(group);
   if (surfaces.size() < 2 || bounds_solid(group.mesh, wish)) return {group};
-  std::size_t inside_out = 0;
   for (const MeshGroup& surface : surfaces) {
-    const MeshFaces& faces = surface.mesh.faces;
-    const auto report = check_mesh({surface.mesh.points, faces.offsets, faces.corners}, {.crossings = false});
-    if (report && report->relative_volume < 0) ++inside_out;
+    const auto report = check_mesh(view_of(surface.mesh), {.crossings = false});
+    if (!report || !report->closed()) return {group};
   }
-  if (inside_out == 0 || (inside_out == surfaces.size() && wish.turn_faces)) return surfaces;
-  refuse("inside_out",
-         name + ": " + group.name + ": " + std::to_string(inside_out) + " of its " + std::to_string(surfaces.size()) +
-             " connected surfaces show their insides, and the surfaces cross or touch, so that cavities cannot be " +
-             "told from parts; let all of them show their outsides (" + wish.turn_words +
-             " turns a mesh whose surfaces all show their insides), or ask for the convex hull of its vertices (" +
-             wish.hull_words + ")",
-         "");
+  return surfaces;
+}
+
+/// A part that shows its inside, among others that do not, may be a cavity, whose faces must not be turned.
+/// @throws Refusal inside_out
+void refuse_cavities(const std::vector<MeshGroup>& parts, const std::string& name, const SolidWish& wish) {
+  std::vector<const MeshGroup*> inside_out;
+  for (const MeshGroup& part : parts) {
+    const auto report = check_mesh(view_of(part.mesh), {.crossings = false});
+    if (report && report->relative_volume < 0) inside_out.push_back(&part);
+  }
+  if (inside_out.empty() || inside_out.size() == parts.size()) return;
+  refuse(
+      "inside_out",
+      name + ": " + inside_out.front()->name + ": " + std::to_string(inside_out.size()) + " of " +
+          std::to_string(parts.size()) +
+          " parts show their insides, and cavities cannot be told from parts there; let all of them show their "
+          "outsides, make each cavity one group with the part around it, or ask for the convex hull of the vertices (" +
+          wish.hull_words + ")",
+      "");
 }
 
 }  // namespace
@@ -235,24 +255,39 @@ std::vector<MeshGroup> bodies_of(const MeshGroup& group, const std::string& name
 NamedBody parts_of_mesh(const MeshPoints& mesh, const std::string& name, const SolidWish& wish) {
   const std::vector<MeshGroup> groups = groups_of(mesh);
   if (groups.empty()) refuse("bad_faces", name + ": the file holds points and no faces, and so no parts", "");
-  const std::string way_out =
-      "; `pdepth decompose` writes convex parts with a stated error, and " + wish.hull_words + " asks for the hull";
+  const std::string alone = has_parts(mesh) ? ", once the part stands in a file of its own" : "";
+  const std::string way_out = "; `pdepth decompose` writes convex parts with a stated error" + alone + ", and " +
+                              wish.hull_words + " asks for the hull";
   std::vector<NamedShape> shapes;
+  SolidWish part_wish = wish;
+  part_wish.parts_words.clear();
+  std::vector<MeshGroup> parts;
   for (const MeshGroup& group : groups) {
-    SolidWish part_wish = wish;
-    part_wish.parts_words.clear();
-    part_wish.extent = extent_of(mesh);
-    for (MeshGroup& part : bodies_of(group, name, part_wish)) {
-      const std::string full_name = name + ": " + part.name;
-      const MeshBody body = body_of_mesh(std::move(part.mesh), full_name, part_wish);
-      if (body.hull) {
-        shapes.push_back(*body.hull);
-        continue;
-      }
-      for (NamedShape& shape : exact_parts(*body.solid, full_name + ": ", way_out)) shapes.push_back(std::move(shape));
+    part_wish.extent = precision_extent(group.mesh, mesh);
+    for (MeshGroup& part : bodies_of(group, part_wish)) parts.push_back(std::move(part));
+  }
+  refuse_cavities(parts, name, wish);
+  for (MeshGroup& part : parts) {
+    const std::string full_name = name + ": " + part.name;
+    part_wish.extent = precision_extent(part.mesh, mesh);
+    const MeshBody body = body_of_mesh(std::move(part.mesh), full_name, part_wish);
+    if (body.hull) {
+      shapes.push_back(*body.hull);
+      continue;
     }
+    for (NamedShape& shape : exact_parts(*body.solid, full_name + ": ", way_out)) shapes.push_back(std::move(shape));
   }
   return union_of(std::move(shapes));
+}
+
+bool answers_as_parts(const MeshPoints& mesh, const SolidWish& wish) {
+  constexpr std::int64_t kMostFaces = 200'000;  // of a trial, which takes some microseconds a face
+  if (mesh.faces.size() > kMostFaces || !has_parts(mesh)) return false;
+  try {
+    return !parts_of_mesh(mesh, "", wish).compound.parts().empty();
+  } catch (const Refusal&) {
+    return false;
+  }
 }
 
 NamedBody read_mesh_parts(const Node& node, const Limits& limits) {

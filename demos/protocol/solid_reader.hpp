@@ -23,7 +23,7 @@ struct SolidWish {
   std::string turn_words = "\"turn_faces\":true";
   /// Words by which one asks for the union of a mesh's parts; none where that cannot be asked.
   std::string parts_words = "\"as\":\"parts\"";
-  /// The largest extent of the file, where the mesh is a part of it; 0: the mesh's own.
+  /// What the precision is a share of, where the mesh is a part of a file; 0: the mesh's own extent.
   double extent = 0;
 };
 
@@ -50,6 +50,9 @@ struct SolidWish {
 /// @throws Refusal as `body_of_mesh` and `parts_of_solid`, with the part that is at fault; bad_faces for a file without
 /// faces.
 [[nodiscard]] NamedBody parts_of_mesh(const MeshPoints& mesh, const std::string& name, const SolidWish& wish);
+
+/// True if a mesh of several groups or surfaces is answered by `parts_of_mesh`; false above 200,000 faces.
+[[nodiscard]] bool answers_as_parts(const MeshPoints& mesh, const SolidWish& wish);
 
 /// Reads a shape {"type":"mesh","as":"parts"}, from its file or its own numbers. @throws Refusal as `parts_of_mesh`
 [[nodiscard]] NamedBody read_mesh_parts(const Node& node, const Limits& limits);

@@ -128,8 +128,19 @@ TEST_F(MeshDoors, SurfacesThatCrossAreParts) {
   for (const char* const turn : {"", R"(,"turn_faces":true)"}) {
     const Json refused = answer(depth_line(mesh(mixed, parts + turn), mesh(cube_), pose)).at("error");
     EXPECT_EQ(refused.at("code"), "inside_out");
-    expect_words(refused.at("message"), {"part 0: 1 of its 2 connected surfaces"});
+    expect_words(refused.at("message"), {"part 0, surface 1: 1 of 2 parts show their insides"});
   }
+  // So does a group of its own: the room inside is not filled.
+  const std::string room = box_obj({0.5, 0.25, 0.25, 1.5, 0.75, 0.75}, 8);
+  const std::string inner =
+      write("inner.obj", "o outer\n" + foot + "o inner\n" + room.substr(0, room.find('f')) + turned);
+  EXPECT_EQ(answer(depth_line(mesh(inner, parts), mesh(cube_), pose)).at("error").at("code"), "inside_out");
+  // Boxes that share a whole face are told by their indices.
+  const std::string row = write("row.obj", box_obj({0, 0, 0, 1, 1, 1}, 0) + box_obj({1, 0, 0, 2, 1, 1}, 8));
+  EXPECT_NEAR(answer(depth_line(mesh(row, parts), mesh(cube_), R"("pose_b":{"translation":[2.5,0,0]})"))
+                  .at("distance")
+                  .get<double>(),
+              0.5, 1e-15);
   // A face that stands there twice is no part.
   write("twice.obj", std::string(kAngle) + "f 6 1 7 12\n");
   EXPECT_EQ(run("depth twice.obj cube.obj").err.find("parts"), std::string::npos);
@@ -150,6 +161,10 @@ TEST_F(MeshDoors, PartsAreConvexToThePrecisionOfTheirFile) {
   const Outcome people = run("depth fine.obj sphere:0.5 --parts --pose-b 0,0,-0.75");
   EXPECT_EQ(people.status, 0) << people.err;
   expect_words(people.out, {"(convex parts: 2)"});
+  // A notch of a fifth of its part stays one, however large the file is.
+  const std::string far_box = box_obj({1e6, 0, 0, 2e6, 1, 1}, 12);
+  write("notch.obj", "o notched\n" + std::string(kAngle) + "o far\n" + far_box);
+  expect_words(run("depth notch.obj cube.obj --parts --pose-b 1.1,1.1,0").out, {"A and B are apart.", "(convex parts: 3)"});
 }
 
 /// A glTF shows one mesh at two places: each showing is a part.

@@ -312,8 +312,8 @@ typedef struct pdepth_answer {
 /// Once the context has grown, two convex bodies allocate nothing, unless exact arithmetic is needed (`exact_signs`).
 /// Compounds and solids allocate. Time: near-linear in the number of vertices at worst, as measured; logarithmic for
 /// shallow contacts. With compounds: one query for each pair of parts whose boxes meet, then at worst O(m^3 n^3) cuts.
-/// Solids: pairs of triangles whose boxes meet; where they overlap, both are cut into parts, and as compounds, or
-/// `max_points` of the settings.
+/// Solids: pairs of triangles whose boxes meet; where they overlap, both are cut into parts and asked as
+/// compounds, or else points are searched, `max_points` of them at most.
 pdepth_status pdepth_depth(pdepth_context* context, const pdepth_question* question, pdepth_answer* answer);
 
 /// Tells if two bodies are apart by more than `distance` >= 0: the question of a broadphase.

@@ -44,9 +44,10 @@ Expected<Polygon> moved_apart(const Polygon& convex, double reach, double turn) 
 Expected<std::shared_ptr<const DiscBracket>> DiscBracket::of(const Polygon& p, const Polygon& q, const Dyadic& radius,
                                                              double low, double high) {
   if (!p.convex() && !q.convex()) {
-    return Error{ErrorCode::unsupported,
-                 "the way out for good with a margin is answered where one polygon is convex; without margins for all",
-                 "complete"};
+    return Error{
+        ErrorCode::unsupported,
+        "the way out for good with a margin is answered where one polygon is convex, or straight along a direction",
+        "complete"};
   }
   const Polygon& convex = q.convex() ? q : p;
   double largest = high;

@@ -34,9 +34,10 @@ class CellContents {
 
   /// The plane that leaves the smallest hulls on its two sides: a face's, one across an axis, or one through two edges.
   /// Nothing where no plane parts the corners.
+  /// @param edges  of the solid; null for no planes through two edges
   /// @param worst  a point that is far from the solid
   /// @param steps  grows by the work, a microsecond or several each
-  [[nodiscard]] std::optional<Side> best_cut(PlaneSet& planes, const SharpEdges& edges, const Vec3& worst,
+  [[nodiscard]] std::optional<Side> best_cut(PlaneSet& planes, const SharpEdges* edges, const Vec3& worst,
                                              std::int64_t& steps) const;
 
  private:

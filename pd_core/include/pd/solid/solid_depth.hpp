@@ -51,11 +51,11 @@ struct SolidDepth : PenetrationDepth {
 [[nodiscard]] ContactClass classify(const PosedSolid& a, const PosedSolid& b);
 
 /// True if A fits exactly: the solids touch, and the places without an overlap have no volume around A's place. So
-/// every small move but along a plane, a line or a ray makes the two overlap: a peg in a hole of exactly its size, a
+/// small moves without an overlap lie in a plane at most, or there are none: a peg in a hole of exactly its size, a
 /// cube in a notch of exactly its width. Such a place is no way out of an overlap.
 ///
 /// Exact on the stored numbers. Time: that of the class, for each of the sectors into which the contacts cut the
-/// directions; most solids that touch need one, and most that fit need none.
+/// directions; most solids that touch ask one class, and most that fit ask none.
 /// @return limit_exceeded above 4,096 sectors, and where vertices or edges that do not meet are nearer than a millionth
 /// of the size.
 [[nodiscard]] Expected<bool> is_seat(const PosedSolid& a, const PosedSolid& b);

@@ -65,6 +65,16 @@ std::vector<std::int32_t> numbered(const WeldedMesh& mesh, DisjointSets& faces) 
   return of_face;
 }
 
+/// Unites the two faces of each edge that has no third.
+void unite_over_lone_edges(const WeldedMesh& mesh, DisjointSets& faces) {
+  const std::vector<EdgeUse> uses = detail::sorted_edges(mesh);
+  const auto face_of = [&](const EdgeUse& use) { return mesh.face_of[static_cast<std::size_t>(use.corner)]; };
+  for (std::size_t i = 0, end = 0; i < uses.size(); i = end) {
+    for (end = i; end < uses.size() && uses[end].same_edge(uses[i]);) ++end;
+    if (end - i == 2) faces.unite(face_of(uses[i]), face_of(uses[i + 1]));
+  }
+}
+
 class MeshChecker {
  public:
   explicit MeshChecker(const MeshView& mesh) : mesh_(detail::weld(mesh)) {
@@ -273,13 +283,23 @@ Expected<SurfaceReport> check_mesh(const MeshView& mesh, const MeshCheckSettings
 
 std::vector<std::int32_t> connected_surfaces(const MeshView& mesh) {
   const WeldedMesh welded = detail::weld(mesh);
-  const std::vector<EdgeUse> uses = detail::sorted_edges(welded);
-  const auto face_of = [&](const EdgeUse& use) { return welded.face_of[static_cast<std::size_t>(use.corner)]; };
   DisjointSets faces(static_cast<std::size_t>(welded.num_faces()));
-  for (std::size_t i = 0, end = 0; i < uses.size(); i = end) {
-    for (end = i; end < uses.size() && uses[end].same_edge(uses[i]);) ++end;
-    if (end - i == 2) faces.unite(face_of(uses[i]), face_of(uses[i + 1]));
+  unite_over_lone_edges(welded, faces);
+  // Solids that share a whole face have edges of four faces, which the stored indices tell apart.
+  WeldedMesh stored = welded;
+  stored.corners.clear();
+  stored.face_of.clear();
+  stored.offsets.assign(1, 0);
+  for (std::int32_t f = 0; f < welded.num_faces(); ++f) {
+    const auto at = static_cast<std::size_t>(f);
+    if (!welded.face(f).empty()) {
+      stored.corners.insert(stored.corners.end(), mesh.corners.begin() + mesh.offsets[at],
+                            mesh.corners.begin() + mesh.offsets[at + 1]);
+    }
+    stored.offsets.push_back(static_cast<std::int32_t>(stored.corners.size()));
+    stored.face_of.resize(stored.corners.size(), f);
   }
+  unite_over_lone_edges(stored, faces);
   return numbered(welded, faces);
 }
 
