@@ -125,31 +125,6 @@ TEST(ConvexDecomposition, CellsInSpaceAreCoveredExactly) {
 }
 
 /// The hull of an L reaches half a cell beyond it, in the middle of the notch's opening.
-/// A ring of four bars with mitred ends: they meet in planes through pairs of edges. Cut along planes of faces alone,
-/// the merged parts overlap each other.
-TEST(ConvexDecomposition, MitredBarsAreFourParts) {
-  Mesh ring;
-  for (const auto& [half, z] : {std::pair{2.0, 0.0}, {1.0, 1.0}, {1.0, 2.0}, {2.0, 3.0}}) {
-    for (const auto& [x, y] : {std::pair{-half, -half}, {half, -half}, {half, half}, {-half, half}}) {
-      ring.points.emplace_back(x, y, z);
-    }
-  }
-  for (std::int32_t k = 0; k < 4; ++k) {
-    const std::int32_t n = (k + 1) % 4;
-    for (std::int32_t level = 0; level < 12; level += 4) ring.add({level + n, level + k, level + 4 + k, level + 4 + n});
-    ring.add({k, n, 12 + n, 12 + k});
-  }
-  const MeshSolid solid = solid_of(ring);
-  for (const bool inside : {false, true}) {
-    const SolidDecomposition found = parts_of(solid, 1e-6, inside);
-    EXPECT_EQ(found.parts.parts().size(), 4U) << inside;
-    EXPECT_TRUE(found.error_reached);
-    EXPECT_LE(found.error, 1e-12);
-    EXPECT_NEAR(found.parts_volume, found.solid_volume, 1e-12);
-    EXPECT_NEAR(found.solid_volume, 48 - 4 - 2 * 28.0 / 3, 1e-12);
-  }
-}
-
 TEST(ConvexDecomposition, ErrorIsThatOfTheNotch) {
   const MeshSolid solid = solid_of(mesh_of(cells_of({"#.", "##"})));
   const SolidDecomposition one = parts_of(solid, 0.6);

@@ -193,13 +193,9 @@ std::vector<Side> CellContents::planes_across_axes(PlaneSet& planes, const Vec3&
   return sides;
 }
 
-std::optional<Side> CellContents::best_cut(PlaneSet& planes, const SharpEdges* edges, const Vec3& worst,
-                                           std::int64_t& steps) const {
+std::optional<Side> CellContents::best_cut(PlaneSet& planes, const Vec3& worst, std::int64_t& steps) const {
   std::vector<Side> sides = planes_of_faces(worst);
   for (const Side side : planes_across_axes(planes, worst)) sides.push_back(side);
-  if (edges != nullptr) {
-    for (const Side side : edges->planes_in(here_.cell, planes, worst)) sides.push_back(side);
-  }
   std::optional<Side> best;
   double least = HUGE_VAL;
   for (const Side side : sides) {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "solid/part_corners.hpp"
-#include "solid/sharp_edges.hpp"
 #include "solid/solid_cells.hpp"
 
 namespace pd::detail {
@@ -32,13 +31,11 @@ class CellContents {
   /// The largest height of a corner above the plane of a face: 0 or rounding for what is convex.
   [[nodiscard]] double largest_rise() const;
 
-  /// The plane that leaves the smallest hulls on its two sides: a face's, one across an axis, or one through two edges.
-  /// Nothing where no plane parts the corners.
-  /// @param edges  of the solid; null for no planes through two edges
+  /// The plane that leaves the smallest hulls on its two sides: a face's, or one across an axis. Nothing where no plane
+  /// parts the corners.
   /// @param worst  a point that is far from the solid
   /// @param steps  grows by the work, a microsecond or several each
-  [[nodiscard]] std::optional<Side> best_cut(PlaneSet& planes, const SharpEdges* edges, const Vec3& worst,
-                                             std::int64_t& steps) const;
+  [[nodiscard]] std::optional<Side> best_cut(PlaneSet& planes, const Vec3& worst, std::int64_t& steps) const;
 
  private:
   struct Sides;

@@ -101,8 +101,7 @@ class Cutting {
 
 class OuterParts : public Cutting {
  public:
-  OuterParts(const MeshSolid& solid, const DecompositionSettings& settings)
-      : Cutting(solid, settings), edges_(solid, cells_.exponent()), reach_(solid) {}
+  OuterParts(const MeshSolid& solid, const DecompositionSettings& settings) : Cutting(solid, settings), reach_(solid) {}
 
   CutParts run() {
     cut();
@@ -152,7 +151,7 @@ class OuterParts : public Cutting {
       if (!hull || hull->affine_dimension() < 3) outer = outer_of(contents);
       found = reach(outer ? outer->polytope : *hull, {settings_.error * (1 - 0x1p-30), 0, kStepsToCut});
       if (found.upper > settings_.error && !must_take) {
-        if (const auto plane = contents.best_cut(cells_.planes(), &edges_, found.worst / scale(), steps_)) return plane;
+        if (const auto plane = contents.best_cut(cells_.planes(), found.worst / scale(), steps_)) return plane;
       }
     }
     if (!outer) outer = outer_of(contents);
@@ -183,7 +182,6 @@ class OuterParts : public Cutting {
   /// A rise of this much, in lengths of the planes, may be rounding.
   static constexpr double kConvex = 0x1p-28;
 
-  SharpEdges edges_;
   HullReach reach_;
 };
 
@@ -227,7 +225,7 @@ class InnerParts : public Cutting {
     std::optional<SolidPart> part;
     if (below) part = part_of(*below, points, worst);
     if (!must_take && !(part && part->error <= settings_.error)) {
-      if (const auto plane = contents.best_cut(cells_.planes(), nullptr, worst / scale(), steps_)) return plane;
+      if (const auto plane = contents.best_cut(cells_.planes(), worst / scale(), steps_)) return plane;
     }
     if (part) {
       parts_.push_back(*std::move(part));
