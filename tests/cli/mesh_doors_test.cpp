@@ -150,10 +150,10 @@ TEST_F(MeshDoors, SurfacesThatCrossAreParts) {
                {"part 1 (\"flat\")", "all points lie in one plane"});
 }
 
-/// Six decimals of a file of a metre round a part of a centimetre by more than 1e-5 of the part.
+/// Six decimals of a file of a metre round a part of three centimetres by more than 1e-5 of the part.
 TEST_F(MeshDoors, PartsAreConvexToThePrecisionOfTheirFile) {
   const std::string part =
-      "v 0 0 0\nv 0.01 0 0\nv 0 0.01 0\nv 0 0 0.01\nv 0.003333 0.003333 0.003332\n"
+      "v 0 0 0\nv 0.03 0 0\nv 0 0.03 0\nv 0 0 0.03\nv 0.01 0.01 0.009999\n"
       "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 5\nf 3 4 5\nf 4 2 5\n";
   write("part.obj", part);
   expect_words(run("check part.obj").out, {"not convex"});
@@ -164,7 +164,8 @@ TEST_F(MeshDoors, PartsAreConvexToThePrecisionOfTheirFile) {
   // A notch of a fifth of its part stays one, however large the file is.
   const std::string far_box = box_obj({1e6, 0, 0, 2e6, 1, 1}, 12);
   write("notch.obj", "o notched\n" + std::string(kAngle) + "o far\n" + far_box);
-  expect_words(run("depth notch.obj cube.obj --parts --pose-b 1.1,1.1,0").out, {"A and B are apart.", "(convex parts: 3)"});
+  expect_words(run("depth notch.obj cube.obj --parts --pose-b 1.1,1.1,0").out,
+               {"A and B are apart.", "(convex parts: 3)"});
 }
 
 /// A glTF shows one mesh at two places: each showing is a part.
