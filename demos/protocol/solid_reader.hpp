@@ -51,7 +51,7 @@ struct SolidWish {
 /// faces.
 [[nodiscard]] NamedBody parts_of_mesh(const MeshPoints& mesh, const std::string& name, const SolidWish& wish);
 
-/// True if a mesh of several groups or surfaces is answered by `parts_of_mesh`; false above 200,000 faces.
+/// True if a mesh of several groups or surfaces is answered by `parts_of_mesh`; false above 5,000 faces.
 [[nodiscard]] bool answers_as_parts(const MeshPoints& mesh, const SolidWish& wish);
 
 /// Reads a shape {"type":"mesh","as":"parts"}, from its file or its own numbers. @throws Refusal as `parts_of_mesh`
