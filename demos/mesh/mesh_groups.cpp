@@ -14,6 +14,9 @@ namespace pd::query {
 
 namespace {
 
+/// Of a surface that bounds a part: a tetrahedron's.
+constexpr std::int64_t kFewestFaces = 4;
+
 /// A group that is being filled, and the new number of each point.
 struct Filling {
   MeshGroup group;
@@ -81,7 +84,6 @@ bool has_parts(const MeshPoints& mesh) {
   for (const std::int32_t surface : connected_surfaces({mesh.points, mesh.faces.offsets, mesh.faces.corners})) {
     if (surface >= 0) ++faces_of[surface];
   }
-  constexpr std::int64_t kFewestFaces = 4;  // a tetrahedron's; fewer bound no part
   return faces_of.size() > 1 && std::all_of(faces_of.begin(), faces_of.end(),
                                             [](const auto& counted) { return counted.second >= kFewestFaces; });
 }
