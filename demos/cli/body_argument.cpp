@@ -132,9 +132,10 @@ std::string name_of(const std::string& word) { return word == "-" ? kStandardInp
 const query::MeshBody& mesh_argument(const std::string& word) {
   static std::map<std::string, query::MeshBody> known;
   const auto [place, fresh] = known.try_emplace(word);
-  if (fresh)
+  if (fresh) {
     place->second =
         query::body_of_mesh(read_points_of(word), name_of(word), {.hull_words = "--hull", .parts_words = "--parts"});
+  }
   return place->second;
 }
 

@@ -348,7 +348,7 @@ int run_solids(const DepthArguments& arguments, const SolidBody& a, const SolidB
   const SolidDepth result = *penetration_depth(posed_a, posed_b, scratch);
   const std::int64_t nanoseconds = watch.nanoseconds();
   if (!arguments.json) {
-    const Expected<bool> seat = is_seat(posed_a, posed_b);
+    const Expected<bool> seat = result.contact == ContactClass::touching ? is_seat(posed_a, posed_b) : false;
     print_solids(arguments, a, b, result, nanoseconds, seat && *seat);
     return kDone;
   }
