@@ -14,7 +14,7 @@ namespace pd::query {
 
 namespace {
 
-/// Of a surface that bounds a part: a tetrahedron's.
+/// The fewest faces of a surface that bounds a part: a tetrahedron's.
 constexpr std::int64_t kFewestFaces = 4;
 
 /// A group that is being filled, and the new number of each point.

@@ -207,8 +207,8 @@ double extent_of(const MeshPoints& mesh) {
   return (high - low).maxCoeff();
 }
 
-/// What the precision of a part is a share of: the file's size, whose text is rounded in one place, and at most ten
-/// times the part's own, so that a small part keeps its notches beside a large one.
+/// The length of which a part's precision is a share: the file's size, since its text is rounded in one place, but at
+/// most ten times the part's own, so that a small part keeps its notches beside a large one.
 double precision_extent(const MeshPoints& part, const MeshPoints& file) {
   constexpr double kMost = 10;
   return std::min(extent_of(file), kMost * extent_of(part));

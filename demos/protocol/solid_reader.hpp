@@ -23,7 +23,7 @@ struct SolidWish {
   std::string turn_words = "\"turn_faces\":true";
   /// Words by which one asks for the union of a mesh's parts; none where that cannot be asked.
   std::string parts_words = "\"as\":\"parts\"";
-  /// What the precision is a share of, where the mesh is a part of a file; 0: the mesh's own extent.
+  /// The length of which the precision is a share, where the mesh is a part of a file; 0: the mesh's own extent.
   double extent = 0;
 };
 

@@ -17,8 +17,8 @@ namespace pd::detail {
 
 namespace {
 
-/// Of so few triangles, and for so few contacts, each is compared; of more, sorted ones, or a large body on a fine
-/// mesh would compare every triangle that it meets with every other.
+/// So few triangles, or triangles of so few contacts, are all compared. More are sorted first, or a large body on a
+/// fine mesh would compare every triangle that it meets with every other.
 constexpr std::size_t kFewTriangles = 128;
 constexpr int kFewContacts = 12;
 

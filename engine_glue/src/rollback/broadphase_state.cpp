@@ -25,7 +25,7 @@ void for_each_node(btDbvtNode* node, Visit&& visit) {
   visit(node);
 }
 
-/// What a broadphase counts, and the first proxies of its stages.
+/// The counters of a broadphase, and the first proxies of its stages.
 template <class Broadphase>
 auto counters_of(Broadphase& b) {
   return std::tie(b.m_stageRoots[0], b.m_stageRoots[1], b.m_stageRoots[2], b.m_stageCurrent, b.m_newpairs,

@@ -29,13 +29,13 @@ struct CachedShape {
   std::atomic<bool> used{false};           ///< found since the cache last looked for entries to drop
   std::atomic<std::uint64_t> compared{0};  ///< the stamp under which all points were last compared
 
-  /// As Bullet's contacts take a body beside another one: two boxes are sharp. Requires a body.
+  /// The body as Bullet's contacts take it beside another one: two boxes are sharp. Requires a body.
   [[nodiscard]] const ConvexShape& beside(const CachedShape& other) const {
     return sharp && other.sharp ? *sharp : *body;
   }
 };
 
-/// What a shape is converted to without a cache.
+/// Converts a shape without a cache.
 [[nodiscard]] std::shared_ptr<CachedShape> converted(const btConvexShape& shape);
 
 }  // namespace pd::detail

@@ -34,7 +34,7 @@ class FlatCompound final : public btCompoundShape {
   mutable std::atomic<std::uint64_t> compared_{0};  ///< the stamp under which it was found current
 };
 
-/// What a pair remembers of the compound of one of its bodies.
+/// A pair's memory of the compound of one of its bodies.
 struct FlatMemory {
   const btCompoundShape* plain = nullptr;  ///< a compound that holds no compound
   int revision = 0;                        ///< of it, by Bullet's count

@@ -238,11 +238,8 @@ typedef struct pdepth_settings {
   /// compounds with curved or swept parts, and exact for the rest.
   double delta;
   double contact_tolerance;  ///< for PDEPTH_BRACKET_CONTACT: an interval of this width is narrow enough; >= 0
-  /// The random order of the decomposition: times depend on it, answers do not.
-  uint64_t seed;
-  /// The budget of two solids that overlap and have many convex parts, in points of some 5 to 15 microseconds each. If
-  /// the budget ends the search, `bracket_reached` is 0. 0: 500,000 points. Other bodies ignore it.
-  int64_t max_points;
+  uint64_t seed;             ///< the decomposition's random order: times depend on it, answers do not
+  int64_t max_points;        ///< budget of the bracket of two solids, 5 to 15 us a point; 0: 500,000; >= 0
 } pdepth_settings;
 
 /// The memory of one pair of bodies from frame to frame, opaque. It makes the next answer quicker.
@@ -312,8 +309,7 @@ typedef struct pdepth_answer {
 /// Once the context has grown, two convex bodies allocate nothing, unless exact arithmetic is needed (`exact_signs`).
 /// Compounds and solids allocate. Time: near-linear in the number of vertices at worst, as measured; logarithmic for
 /// shallow contacts. With compounds: one query for each pair of parts whose boxes meet, then at worst O(m^3 n^3) cuts.
-/// Solids: pairs of triangles whose boxes meet; where they overlap, both are cut into parts and asked as
-/// compounds, or else points are searched, `max_points` of them at most.
+/// Solids: pairs of triangles whose boxes meet; where they overlap, the parts of both, or `max_points` points.
 pdepth_status pdepth_depth(pdepth_context* context, const pdepth_question* question, pdepth_answer* answer);
 
 /// Tells if two bodies are apart by more than `distance` >= 0: the question of a broadphase.

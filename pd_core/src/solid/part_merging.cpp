@@ -68,7 +68,7 @@ class Merger {
   }
 
  private:
-  /// Of a part that is about to be the last one.
+  /// Notes volume and box of a part that is about to be the last one.
   void note(const ConvexPolytope& body) {
     volumes_.push_back(volume_of(body));
     gone_.push_back(0);

@@ -21,7 +21,7 @@ using scenes::PairFamily;
 
 constexpr VertexPair kAny{0, 0};
 
-/// Of the simplex, scaled as the pair is.
+/// The distance of the simplex from the origin, scaled as the pair is.
 double distance_of(const PosedPair& pair, const detail::ClosestSimplex& found) {
   using Simplex = detail::SimplexOfNumbers<detail::DoubleDouble, VertexPair>;
   std::array<Simplex::Corner, 4> corners;

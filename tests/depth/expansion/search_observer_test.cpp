@@ -138,7 +138,7 @@ TEST(SearchObserver, RuledBodiesNextToContactReachTheirBracket) {
     EXPECT_EQ(words.rfind("double: ", 0), 0U) << words;
     const PenetrationDepth answer = penetration_depth(a, b, scratch);
     ASSERT_NE(answer.contact, ContactClass::separated);
-    // Of the size of the pair: what `touching` allows.
+    // The width is a share of the pair's size: `touching` allows as much.
     EXPECT_TRUE(answer.bracket_reached || answer.upper - answer.lower <= 4e-12) << deep << " " << words;
   }
 }

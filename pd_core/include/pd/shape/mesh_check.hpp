@@ -108,8 +108,8 @@ struct MeshView {
 /// The connected surface of each face, numbered from 0 in the order of their first faces; -1 for a face of fewer than
 /// three different points.
 ///
-/// Two faces are connected where an edge is theirs alone, so that solids which touch in an edge or a vertex have
-/// surfaces of their own; `SurfaceReport::shells` counts those as one.
+/// Two faces are connected where an edge is theirs alone, by its points or its stored indices. Solids that touch in an
+/// edge or a vertex so have surfaces of their own; `SurfaceReport::shells` counts those as one.
 /// @param mesh  one that `check_mesh` accepts. Time O(n log n) for n corners.
 [[nodiscard]] std::vector<std::int32_t> connected_surfaces(const MeshView& mesh);
 

@@ -11,7 +11,8 @@ namespace pd::detail {
 
 namespace {
 
-/// Of the reach: below it single precision, in which a search over many vertices looks for supports, cannot tell.
+/// The share of the reach below which single precision, in which a search over many vertices looks for supports,
+/// cannot tell.
 constexpr double kSeenGap = 0x1p-20;
 
 /// The direction to look for a support in: along the normal of the face that holds the nearest point.

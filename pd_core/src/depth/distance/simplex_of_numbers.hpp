@@ -14,7 +14,7 @@
 
 namespace pd::detail {
 
-/// What the text asks of a kind of numbers.
+/// The operations that the text needs of a kind of numbers.
 template <class Number>
 struct SimplexNumber;
 template <>
@@ -46,7 +46,7 @@ struct NearestOfFace {
   int count = 0;
 };
 
-/// Of up to four corners.
+/// A simplex of up to four corners, and its point nearest to the origin.
 /// @tparam Vertex  whatever the caller knows a corner by
 template <class Number, class Vertex>
 class SimplexOfNumbers {
