@@ -38,12 +38,11 @@ bool same_bits(const ConvexPolytope& p, const ConvexPolytope& q) {
   }
   bool same = same_bytes(p.x(), q.x(), p.padded_size()) && same_bytes(p.y(), q.y(), p.padded_size()) &&
               same_bytes(p.z(), q.z(), p.padded_size());
-  for (int h = 0; h < p.num_half_edges(); ++h) same = same && same_bytes(&p.half_edge(h), &q.half_edge(h), 1);
+  for (int h = 0; h < p.num_half_edges(); ++h) same = same && p.half_edge(h) == q.half_edge(h);
   for (int f = 0; f < p.num_facets(); ++f) {
     const auto a = p.facet_vertices(f);
     const auto b = q.facet_vertices(f);
-    same = same && a.size() == b.size() && same_bytes(a.data(), b.data(), static_cast<int>(a.size())) &&
-           same_bytes(p.facet_normal(f).data(), q.facet_normal(f).data(), 3);
+    same = same && std::ranges::equal(a, b) && same_bytes(p.facet_normal(f).data(), q.facet_normal(f).data(), 3);
   }
   return same;
 }

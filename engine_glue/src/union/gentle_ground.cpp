@@ -123,7 +123,7 @@ void GentleGround::cut(const Vec3& outward, const Vec3& corner, std::int32_t edg
   size_ = kept;
 }
 
-void GentleGround::cut_facet(std::span<const std::int32_t> loop, const Placed& triangle, const Vec3& n) {
+void GentleGround::cut_facet(const IndexList& loop, const Placed& triangle, const Vec3& n) {
   size_ = loop.size();
   for (std::size_t i = 0; i < size_; ++i) {
     const auto number = static_cast<std::int32_t>(i);
@@ -137,7 +137,7 @@ void GentleGround::cut_facet(std::span<const std::int32_t> loop, const Placed& t
   }
 }
 
-std::optional<Vec3> GentleGround::way_at(const Corner& nearest, std::span<const std::int32_t> loop, int facet,
+std::optional<Vec3> GentleGround::way_at(const Corner& nearest, const IndexList& loop, int facet,
                                          const MeshTriangle& triangle, const Placed& placed, std::size_t place,
                                          SharedEdges& edges) const {
   const auto number = static_cast<std::size_t>(nearest.of_triangle);

@@ -69,12 +69,12 @@ class GentleGround {
   /// The facet that faces against n, -1 where another one may meet what faces nearly as n.
   [[nodiscard]] int facet_against(const Vec3& n) const;
   /// What is left of the facet over the triangle, seen along n.
-  void cut_facet(std::span<const std::int32_t> loop, const Placed& triangle, const Vec3& n);
+  void cut_facet(const IndexList& loop, const Placed& triangle, const Vec3& n);
   [[nodiscard]] std::span<const Corner> polygon() const { return std::span(polygons_[from_]).first(size_); }
   /// Cuts it to where `outward` leads down from `corner`, an end of the triangle's edge number `edge`.
   void cut(const Vec3& outward, const Vec3& corner, std::int32_t edge);
   /// Which way contacts push where the facet is nearest to the triangle; none where that hangs on more than is known.
-  [[nodiscard]] std::optional<Vec3> way_at(const Corner& nearest, std::span<const std::int32_t> loop, int facet,
+  [[nodiscard]] std::optional<Vec3> way_at(const Corner& nearest, const IndexList& loop, int facet,
                                            const MeshTriangle& triangle, const Placed& placed, std::size_t place,
                                            SharedEdges& edges) const;
   /// The same of a sphere, which one point of the triangle is nearest to, however the mesh goes on.

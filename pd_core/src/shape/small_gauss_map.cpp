@@ -11,14 +11,14 @@ void fill_small_gauss_map(const ConvexPolytope::Storage& s, SmallGaussMap& out) 
     out.nx[i] = n.x();
     out.ny[i] = n.y();
     out.nz[i] = n.z();
-    const std::int32_t on = s.facet_vertices[s.facet_offsets[f]];
+    const std::int32_t on = s.first_corner(f);
     out.height[i] = n.dot(vertex(on));
   }
   int count = 0;
   for (int h = 0; h < s.num_half_edges; ++h) {
-    const HalfEdge& e = s.half_edges[h];
+    const HalfEdge e = s.half_edge(h);
     if (e.twin < h) continue;
-    const HalfEdge& back = s.half_edges[e.twin];
+    const HalfEdge back = s.half_edge(e.twin);
     out.edge[count] = {static_cast<std::uint8_t>(e.origin), static_cast<std::uint8_t>(back.origin),
                        static_cast<std::uint8_t>(e.facet), static_cast<std::uint8_t>(back.facet)};
     ++count;

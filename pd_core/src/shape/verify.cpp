@@ -48,11 +48,11 @@ Finding check_half_edges(const ConvexPolytope& p) {
     if (degree < p.affine_dimension()) return indexed("vertices", v) + " has too few neighbours";
     for (int k = 0; k < degree; ++k) {
       const int h = next_index + k;
-      const HalfEdge& edge = p.half_edge(h);
+      const HalfEdge edge = p.half_edge(h);
       const auto valid = [&](int index) { return index >= 0 && index < p.num_half_edges(); };
       if (!valid(edge.twin) || !valid(edge.next)) return indexed("half_edges", h) + " leads nowhere";
-      const HalfEdge& twin = p.half_edge(edge.twin);
-      const HalfEdge& next = p.half_edge(edge.next);
+      const HalfEdge twin = p.half_edge(edge.twin);
+      const HalfEdge next = p.half_edge(edge.next);
       if (edge.origin != v || neighbours[static_cast<std::size_t>(k)] != p.target(h)) {
         return indexed("half_edges", h) + " does not join its origin to the neighbour listed";
       }
@@ -140,7 +140,7 @@ Finding check_convexity(const ConvexPolytope& p, double max_global_tests) {
   if (p.affine_dimension() < 3) return std::nullopt;
   if (p.num_vertices() - p.num_edges() + p.num_facets() != 2) return "Euler's formula does not hold";
   for (int h = 0; h < p.num_half_edges(); ++h) {
-    const HalfEdge& twin = p.half_edge(p.half_edge(h).twin);
+    const HalfEdge twin = p.half_edge(p.half_edge(h).twin);
     if (side(p, p.half_edge(h).facet, p.target(twin.next)) >= 0) return indexed("half_edges", h) + " is not convex";
   }
   if (static_cast<double>(p.num_vertices()) * p.num_facets() > max_global_tests) return std::nullopt;

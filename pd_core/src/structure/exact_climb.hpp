@@ -45,7 +45,7 @@ void level_face(const ConvexPolytope& body, int at, Sign&& sign, std::vector<std
   }
   if (face.size() < 3) return;
   // Two level edges bound a facet, which lies on the left of one of them.
-  const auto holds = [&](std::span<const std::int32_t> loop, std::int32_t v) {
+  const auto holds = [&](const IndexList& loop, std::int32_t v) {
     return std::find(loop.begin(), loop.end(), v) != loop.end();
   };
   for (const int edge : edges) {

@@ -11,6 +11,7 @@
 
 #include "pd/numeric/expected.hpp"
 #include "pd/numeric/vector.hpp"
+#include "pd/shape/index_list.hpp"
 
 namespace pd {
 
@@ -20,18 +21,21 @@ struct HalfEdge {
   std::int32_t twin;    ///< half-edge
   std::int32_t next;    ///< half-edge, counter-clockwise round `facet`
   std::int32_t facet;   ///< -1 for the two half-edges of a segment
+
+  bool operator==(const HalfEdge&) const = default;
 };
 
 /// Immutable and cheap to copy (shared storage), in a frame of its own.
 ///
 /// Vertices are stored in canonical order (lexicographic by x, y, z), so that every result is independent of the
-/// caller's order; `caller_id` leads back. A polygon in space is stored doubly covered: two facets with opposite
-/// normals. A segment has two vertices, one edge and no facet; a point has one vertex.
+/// caller's order; `caller_id` leads back. Indices take as few bytes as the body needs (index_list.hpp). A polygon in
+/// space is stored doubly covered: two facets with opposite normals. A segment has two vertices, one edge and no facet;
+/// a point has one vertex.
 class ConvexPolytope {
  public:
   struct Storage;
   /// Vertex coordinates are padded to a multiple of this (with copies of vertex 0) for vector kernels.
-  static constexpr int kPadding = 16;
+  static constexpr int kPadding = 8;
 
   /// Hull of the points; interior points, duplicates and points inside facets or edges are dropped.
   /// @param points  [n x 3], 1 <= n <= 3e8, finite, |coordinate| <= kMaxCoordinate.
@@ -67,28 +71,28 @@ class ConvexPolytope {
   [[nodiscard]] const double* z() const { return data_->z; }
   [[nodiscard]] int padded_size() const { return data_->padded_size; }
   /// The caller's index of a vertex, the lowest of duplicates.
-  [[nodiscard]] int caller_id(int v) const { return data_->caller_ids[v]; }
+  [[nodiscard]] int caller_id(int v) const {
+    return data_->caller_width.read(data_->caller_ids, static_cast<std::size_t>(v));
+  }
 
   /// Vertices joined to v by an edge, counter-clockwise from outside for solids.
-  [[nodiscard]] std::span<const std::int32_t> neighbours(int v) const {
-    return {data_->neighbours + data_->neighbour_offsets[v],
-            static_cast<std::size_t>(data_->neighbour_offsets[v + 1] - data_->neighbour_offsets[v])};
+  [[nodiscard]] IndexList neighbours(int v) const {
+    return {data_->neighbours, data_->first_half_edge(v), data_->first_half_edge(v + 1), data_->width};
   }
   /// The half-edge from v to `neighbours(v)[k]` has index `first_half_edge(v) + k`: half-edges are stored by origin.
-  [[nodiscard]] int first_half_edge(int v) const { return data_->neighbour_offsets[v]; }
-  [[nodiscard]] const HalfEdge& half_edge(int h) const { return data_->half_edges[h]; }
-  [[nodiscard]] int target(int h) const { return data_->half_edges[data_->half_edges[h].twin].origin; }
+  [[nodiscard]] int first_half_edge(int v) const { return data_->first_half_edge(v); }
+  [[nodiscard]] HalfEdge half_edge(int h) const { return data_->half_edge(h); }
+  [[nodiscard]] int target(int h) const { return data_->target(h); }
 
   /// Vertex loop of a facet, counter-clockwise from outside; no three are collinear, so the first three give the plane
   /// exactly.
-  [[nodiscard]] std::span<const std::int32_t> facet_vertices(int f) const {
-    return {data_->facet_vertices + data_->facet_offsets[f],
-            static_cast<std::size_t>(data_->facet_offsets[f + 1] - data_->facet_offsets[f])};
+  [[nodiscard]] IndexList facet_vertices(int f) const {
+    return {data_->facet_vertices, data_->facet_offset(f), data_->facet_offset(f + 1), data_->width};
   }
   /// Outward unit normal, rounded (relative error a few ulp; not for decisions).
   [[nodiscard]] const Vec3& facet_normal(int f) const { return data_->facet_normals[f]; }
   /// A half-edge of facet f, the one that leaves `facet_vertices(f)[0]`.
-  [[nodiscard]] int facet_half_edge(int f) const { return data_->facet_half_edges[f]; }
+  [[nodiscard]] int facet_half_edge(int f) const { return data_->index(data_->facet_half_edges, f); }
 
   /// Largest |coordinate|.
   [[nodiscard]] double max_abs_coordinate() const { return data_->max_abs_coordinate; }
@@ -133,19 +137,41 @@ class ConvexPolytope {
     const double* x = nullptr;
     const double* y = nullptr;
     const double* z = nullptr;
-    const std::int32_t* caller_ids = nullptr;
-    const std::int32_t* neighbour_offsets = nullptr;  ///< [num_vertices + 1]
-    const std::int32_t* neighbours = nullptr;         ///< [num_half_edges]
-    const HalfEdge* half_edges = nullptr;             ///< [num_half_edges]
-    const std::int32_t* facet_offsets = nullptr;      ///< [num_facets + 1]
-    const std::int32_t* facet_vertices = nullptr;
-    const std::int32_t* facet_half_edges = nullptr;  ///< [num_facets]
-    const Vec3* facet_normals = nullptr;             ///< [num_facets]
+    const std::byte* caller_ids = nullptr;         ///< [num_vertices], of `caller_width`
+    const std::byte* neighbour_offsets = nullptr;  ///< [num_vertices + 1], as all that follow of `width`
+    const std::byte* neighbours = nullptr;         ///< [num_half_edges]: the half-edges' targets
+    const std::byte* twins = nullptr;              ///< [num_half_edges]
+    const std::byte* left_facets = nullptr;        ///< [num_half_edges]
+    const std::byte* facet_offsets = nullptr;      ///< [num_facets + 1]
+    const std::byte* facet_vertices = nullptr;
+    const std::byte* facet_half_edges = nullptr;  ///< [num_facets]
+    IndexWidth width;
+    IndexWidth caller_width;
+    const Vec3* facet_normals = nullptr;  ///< [num_facets]
     /// Where the search for a support begins (src/shape/support/direction_table.hpp): lists of vertices by cells of
     /// directions, divided by a power of two above `radius`. Empty for small bodies.
     const VertexBlock* table_blocks = nullptr;
     const std::int32_t* table_more = nullptr;  ///< [6 table_cells^2 + 1], in blocks
     std::int32_t table_cells = 0;
+
+    [[nodiscard, gnu::always_inline]] std::int32_t index(const std::byte* list, std::int32_t i) const {
+      return width.read(list, static_cast<std::size_t>(i));
+    }
+    [[nodiscard, gnu::always_inline]] std::int32_t first_half_edge(std::int32_t v) const {
+      return index(neighbour_offsets, v);
+    }
+    [[nodiscard, gnu::always_inline]] std::int32_t target(std::int32_t h) const { return index(neighbours, h); }
+    [[nodiscard, gnu::always_inline]] std::int32_t facet_offset(std::int32_t f) const {
+      return index(facet_offsets, f);
+    }
+    [[nodiscard, gnu::always_inline]] std::int32_t first_corner(std::int32_t f) const {
+      return index(facet_vertices, facet_offset(f));
+    }
+    /// The edge that follows h round its facet leaves h's target clockwise from h's twin.
+    [[nodiscard, gnu::always_inline]] HalfEdge half_edge(std::int32_t h) const {
+      const std::int32_t to = target(h), twin = index(twins, h), first = first_half_edge(to);
+      return {target(twin), twin, (twin == first ? first_half_edge(to + 1) : twin) - 1, index(left_facets, h)};
+    }
   };
 
   /// For the hull builder.

@@ -36,7 +36,7 @@ class NormalDiagram {
   [[nodiscard]] const Vec3& point(int facet) const { return polytope_->facet_normal(facet); }
   /// Requires a polytope with facets (a segment's diagram is one great circle without ends).
   [[nodiscard]] Arc arc(int half_edge) const {
-    const HalfEdge& h = polytope_->half_edge(half_edge);
+    const HalfEdge h = polytope_->half_edge(half_edge);
     return {h.facet, polytope_->half_edge(h.twin).facet, polytope_->target(half_edge), h.origin};
   }
   /// The k-th corner of a cell, counter-clockwise, k < neighbours(vertex).size(): a facet.

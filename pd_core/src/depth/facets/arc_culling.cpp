@@ -59,7 +59,7 @@ void keep_edges(const ConvexPolytope& body, NearArcs& out) {
   out.kept.resize(static_cast<std::size_t>(count));
   std::size_t n = 0;
   for (int h = 0; h < count; ++h) {
-    const HalfEdge& e = body.half_edge(h);
+    const HalfEdge e = body.half_edge(h);
     // Written in any case and counted where it stays: no branch to guess.
     out.kept[n] = h;
     const int other = body.half_edge(e.twin).facet;

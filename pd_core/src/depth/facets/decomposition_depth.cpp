@@ -178,7 +178,7 @@ class DecompositionSearch {
     std::vector<std::int32_t>& edges = of_a ? buffers_.edges_a : buffers_.edges_b;
     edges.clear();
     for (int h = 0; h < own.num_half_edges(); ++h) {
-      const HalfEdge& e = own.half_edge(h);
+      const HalfEdge e = own.half_edge(h);
       if (e.twin < h || (e.facet >= 0 && far_arc(of_a, e.facet, own.half_edge(e.twin).facet))) continue;
       edges.push_back(h);
     }
@@ -223,7 +223,7 @@ class DecompositionSearch {
     const double mirror = of_a ? -1 : 1;
     double length = 0;
     for (const std::int32_t h : of_a ? buffers_.edges_a : buffers_.edges_b) {
-      const HalfEdge& e = own.half_edge(h);
+      const HalfEdge e = own.half_edge(h);
       if (e.facet < 0) return 0;  // a segment: little to search
       const Vec3 p = mirror * (pose.rotation() * own.facet_normal(e.facet));
       const Vec3 q = mirror * (pose.rotation() * own.facet_normal(own.half_edge(e.twin).facet));

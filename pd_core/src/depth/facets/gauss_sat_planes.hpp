@@ -63,7 +63,7 @@ PD_INLINE void place_planes(Planes<Middle>& out, const GaussSatBody& body, const
     out.nx[f] = n[0];
     out.ny[f] = n[1];
     out.nz[f] = n[2];
-    const std::int32_t on = s.facet_vertices[s.facet_offsets[i]];
+    const std::int32_t on = s.first_corner(i);
     x[f] = body.posed.x[on];
     y[f] = body.posed.y[on];
     z[f] = body.posed.z[on];
@@ -200,8 +200,7 @@ PD_INLINE void list_near_facets(NearGaussPieces& near, bool of_a, const GaussSat
     for (int v = 1; v < other.count; ++v) vertex = heights.row[v][f] > heights.row[vertex][f] ? v : vertex;
     GaussPiece piece{-1, -1, {0, 0}, {0, 0}};
     (of_a ? piece.facet_a : piece.facet_b) = static_cast<std::int8_t>(f);
-    (of_a ? piece.a : piece.b)[0] =
-        static_cast<std::int8_t>(body.storage.facet_vertices[body.storage.facet_offsets[f]]);
+    (of_a ? piece.a : piece.b)[0] = static_cast<std::int8_t>(body.storage.first_corner(f));
     (of_a ? piece.b : piece.a)[0] = static_cast<std::int8_t>(vertex);
     near.add(key, piece);
   }
@@ -276,19 +275,19 @@ PD_INLINE bool keep_near_edges(KeptEdges<Size>& out, const GaussSatBody& body, c
     std::uint8_t kept[2 * Size::kEdges + 1];
     int both_ways = 0;
     for (int v = 0; v < s.num_vertices; ++v) {
-      const int end = s.neighbour_offsets[v + 1];
-      std::uint32_t right = far[s.half_edges[end - 1].facet];
-      for (int h = s.neighbour_offsets[v]; h < end; ++h) {
-        const std::uint32_t left = far[s.half_edges[h].facet];
+      const int end = s.first_half_edge(v + 1);
+      std::uint32_t right = far[s.index(s.left_facets, end - 1)];
+      for (int h = s.first_half_edge(v); h < end; ++h) {
+        const std::uint32_t left = far[s.index(s.left_facets, h)];
         kept[both_ways] = static_cast<std::uint8_t>(h);
         both_ways += static_cast<int>((left & right) == 0);
         right = left;
       }
     }
     for (int k = 0; k < both_ways; ++k) {
-      const HalfEdge& e = s.half_edges[kept[k]];
+      const HalfEdge e = s.half_edge(kept[k]);
       if (e.twin < kept[k]) continue;
-      const HalfEdge& back = s.half_edges[e.twin];
+      const HalfEdge back = s.half_edge(e.twin);
       out.edge[count] = {static_cast<std::uint8_t>(e.origin), static_cast<std::uint8_t>(back.origin),
                          static_cast<std::uint8_t>(e.facet), static_cast<std::uint8_t>(back.facet)};
       ++count;

@@ -74,7 +74,7 @@ void LineTree::build(const PosedPair& pair, const OverlayBuffers& overlay, bool 
   const Mat3 turn = normal_matrix(of_a ? pair.pose_a() : pair.pose_b());
   const Vec3 origin = of_a ? frame.origin : Vec3(frame.origin - frame.offset);
   for (const std::int32_t h : edges) {
-    const HalfEdge& e = body.half_edge(h);
+    const HalfEdge e = body.half_edge(h);
     const int target = body.target(h);
     // From the stored points and not from the posed ones, whose rounding is that of far larger numbers.
     const Vec3 vector =

@@ -117,8 +117,8 @@ class NearFacetsSearch {
     std::vector<Edge>& edges = of_a ? buffers_.edges_a : buffers_.edges_b;
     edges.resize(kept.size());
     for (std::size_t i = 0; i < kept.size(); ++i) {
-      const HalfEdge& e = own.half_edge(kept[i]);
-      const HalfEdge& back = own.half_edge(e.twin);
+      const HalfEdge e = own.half_edge(kept[i]);
+      const HalfEdge back = own.half_edge(e.twin);
       const Vec3 from = own.vertex(e.origin);
       const Vec3 vector = turn * (own.vertex(back.origin) - from);
       const double length = vector.norm();

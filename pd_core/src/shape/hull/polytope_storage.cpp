@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <initializer_list>
 #include <new>
 #include <numeric>
 #include <tuple>
@@ -47,19 +48,33 @@ class MemoryBlock {
   std::size_t used_ = 0;
 };
 
+/// A list of indices that is being written.
+struct List {
+  std::byte* bytes;
+  IndexWidth width;
+
+  void set(std::int32_t i, std::int32_t index) const { width.write(bytes, static_cast<std::size_t>(i), index); }
+  [[nodiscard]] std::int32_t operator[](std::int32_t i) const { return width.read(bytes, static_cast<std::size_t>(i)); }
+  void set_all(std::initializer_list<std::int32_t> indices) const {
+    std::int32_t i = 0;
+    for (const std::int32_t index : indices) set(i++, index);
+  }
+};
+
 struct Arrays {
   Storage* storage;
   double* x;
   double* y;
   double* z;
   Vec3* facet_normals;
-  HalfEdge* half_edges;
-  std::int32_t* caller_ids;
-  std::int32_t* neighbour_offsets;
-  std::int32_t* neighbours;
-  std::int32_t* facet_offsets;
-  std::int32_t* facet_vertices;
-  std::int32_t* facet_half_edges;
+  List caller_ids;
+  List neighbour_offsets;
+  List neighbours;
+  List twins;
+  List left_facets;
+  List facet_offsets;
+  List facet_vertices;
+  List facet_half_edges;
 };
 
 struct Counts {
@@ -69,6 +84,8 @@ struct Counts {
   int facet_vertices;
   int facets;
   bool has_gauss_map;
+  IndexWidth width;
+  IndexWidth caller_width;
 };
 
 int padded(int n) { return (n + ConvexPolytope::kPadding - 1) / ConvexPolytope::kPadding * ConvexPolytope::kPadding; }
@@ -80,13 +97,19 @@ Arrays take_arrays(MemoryBlock& block, const Counts& n) {
   a.y = block.take<double>(n.padded);
   a.z = block.take<double>(n.padded);
   a.facet_normals = block.take<Vec3>(n.facets);
-  a.half_edges = block.take<HalfEdge>(n.half_edges);
-  a.caller_ids = block.take<std::int32_t>(n.vertices);
-  a.neighbour_offsets = block.take<std::int32_t>(n.vertices + 1);
-  a.neighbours = block.take<std::int32_t>(n.half_edges);
-  a.facet_offsets = block.take<std::int32_t>(n.facets + 1);
-  a.facet_vertices = block.take<std::int32_t>(n.facet_vertices);
-  a.facet_half_edges = block.take<std::int32_t>(n.facets);
+  const auto list = [&](int count, IndexWidth width) {
+    return List{block.take<std::byte>(count * static_cast<int>(width.bytes())), width};
+  };
+  a.caller_ids = list(n.vertices, n.caller_width);
+  a.neighbour_offsets = list(n.vertices + 1, n.width);
+  a.neighbours = list(n.half_edges, n.width);
+  a.twins = list(n.half_edges, n.width);
+  a.left_facets = list(n.half_edges, n.width);
+  a.facet_offsets = list(n.facets + 1, n.width);
+  a.facet_vertices = list(n.facet_vertices, n.width);
+  a.facet_half_edges = list(n.facets, n.width);
+  std::byte* const behind = block.take<std::byte>(static_cast<int>(IndexWidth::kReadableBehind));
+  if (behind != nullptr) std::fill_n(behind, IndexWidth::kReadableBehind, std::byte{0});
   return a;
 }
 
@@ -154,7 +177,7 @@ void write_surface(const LoopEdges& e, const Arrays& out, const Counts& n) {
   std::vector<std::int32_t> ordered(e.origin.size());
   std::int32_t h = 0;
   for (int v = 0; v < n.vertices; ++v) {
-    out.neighbour_offsets[v] = h;
+    out.neighbour_offsets.set(v, h);
     std::int32_t lowest = e.by_origin[static_cast<std::size_t>(e.first[static_cast<std::size_t>(v)])];
     for (std::int32_t i = e.first[static_cast<std::size_t>(v)]; i < e.first[static_cast<std::size_t>(v) + 1]; ++i) {
       const std::int32_t candidate = e.by_origin[static_cast<std::size_t>(i)];
@@ -162,63 +185,70 @@ void write_surface(const LoopEdges& e, const Arrays& out, const Counts& n) {
     }
     std::int32_t k = lowest;
     do {  // the facet lies to the left of k, and beyond it the reverse of the edge that enters v
-      out.neighbours[h] = e.target(k);
+      out.neighbours.set(h, e.target(k));
       ordered[static_cast<std::size_t>(h)] = k;
       number[static_cast<std::size_t>(k)] = h++;
       k = e.twin[static_cast<std::size_t>(e.previous[static_cast<std::size_t>(k)])];
     } while (k != lowest);
   }
-  out.neighbour_offsets[n.vertices] = h;
+  out.neighbour_offsets.set(n.vertices, h);
 
-  for (std::int32_t i = 0; i < n.half_edges; ++i) out.half_edges[i].facet = -1;
+  std::vector<bool> has_facet(e.origin.size(), false);
   std::int32_t facet = 0;
   std::int32_t filled = 0;
   for (std::int32_t i = 0; i < n.half_edges; ++i) {
     const auto k = static_cast<std::size_t>(ordered[static_cast<std::size_t>(i)]);
-    HalfEdge& edge = out.half_edges[i];
-    edge.origin = e.origin[k];
-    edge.twin = number[static_cast<std::size_t>(e.twin[k])];
-    edge.next = number[static_cast<std::size_t>(e.next[k])];
-    if (edge.facet >= 0) continue;
-    out.facet_offsets[facet] = filled;
-    out.facet_half_edges[facet] = i;
+    out.twins.set(i, number[static_cast<std::size_t>(e.twin[k])]);
+    if (has_facet[k]) continue;
+    out.facet_offsets.set(facet, filled);
+    out.facet_half_edges.set(facet, i);
     std::size_t walk = k;
     do {
-      out.half_edges[number[walk]].facet = facet;
-      out.facet_vertices[filled++] = e.origin[walk];
+      has_facet[walk] = true;
+      out.left_facets.set(number[walk], facet);
+      out.facet_vertices.set(filled++, e.origin[walk]);
       walk = static_cast<std::size_t>(e.next[walk]);
     } while (walk != k);
     ++facet;
   }
-  out.facet_offsets[facet] = filled;
+  out.facet_offsets.set(facet, filled);
 }
 
 /// What `write_surface` writes of a doubly covered triangle, whichever way round it was given.
 void write_triangle(const Arrays& out) {
-  constexpr HalfEdge kEdges[] = {{0, 2, 3, 0}, {0, 4, 5, 1}, {1, 0, 1, 1}, {1, 5, 4, 0}, {2, 1, 0, 0}, {2, 3, 2, 1}};
-  constexpr std::int32_t kNeighbours[] = {1, 2, 0, 2, 0, 1}, kLoops[] = {0, 1, 2, 0, 2, 1};
-  std::copy(std::begin(kEdges), std::end(kEdges), out.half_edges);
-  std::copy(std::begin(kNeighbours), std::end(kNeighbours), out.neighbours);
-  std::copy(std::begin(kLoops), std::end(kLoops), out.facet_vertices);
-  for (std::int32_t v = 0; v <= 3; ++v) out.neighbour_offsets[v] = 2 * v;
-  for (std::int32_t f = 0; f <= 2; ++f) out.facet_offsets[f] = 3 * f;
-  for (std::int32_t f = 0; f < 2; ++f) out.facet_half_edges[f] = f;
+  out.neighbour_offsets.set_all({0, 2, 4, 6});
+  out.neighbours.set_all({1, 2, 0, 2, 0, 1});
+  out.twins.set_all({2, 4, 0, 5, 1, 3});
+  out.left_facets.set_all({0, 1, 1, 0, 0, 1});
+  out.facet_offsets.set_all({0, 3, 6});
+  out.facet_vertices.set_all({0, 1, 2, 0, 2, 1});
+  out.facet_half_edges.set_all({0, 1});
 }
 
-/// What a body has in common with one of the same faces: all but coordinates and normals.
+/// What a body has in common with one of the same faces and the same widths of indices: all but coordinates, normals
+/// and caller ids.
 void copy_surface(const Storage& body, const Counts& n, const Arrays& out) {
-  std::copy_n(body.half_edges, n.half_edges, out.half_edges);
-  std::copy_n(body.neighbour_offsets, n.vertices + 1, out.neighbour_offsets);
-  std::copy_n(body.neighbours, n.half_edges, out.neighbours);
-  std::copy_n(body.facet_offsets, n.facets + 1, out.facet_offsets);
-  std::copy_n(body.facet_vertices, n.facet_vertices, out.facet_vertices);
-  std::copy_n(body.facet_half_edges, n.facets, out.facet_half_edges);
+  const std::byte* const end = body.facet_half_edges + n.facets * static_cast<int>(n.width.bytes());
+  std::copy(body.neighbour_offsets, end, out.neighbour_offsets.bytes);
+}
+
+IndexWidth width_of_callers(std::span<const HullVertex> vertices) {
+  std::int32_t most = 0;
+  for (const HullVertex& v : vertices) most = std::max(most, v.caller_id);
+  return IndexWidth::up_to(most);
+}
+
+/// Requires all counts but the width itself.
+IndexWidth width_of_indices(const Counts& n) {
+  // A segment's half-edges have facet -1.
+  return n.facets == 0 ? IndexWidth() : IndexWidth::up_to(std::max(n.half_edges, n.vertices));
 }
 
 Counts counts_of(const Storage& body) {
   return {body.num_vertices,   body.padded_size,
-          body.num_half_edges, body.facet_offsets[body.num_facets],
-          body.num_facets,     has_small_gauss_map(body.affine_dimension, body.num_vertices)};
+          body.num_half_edges, body.facet_offset(body.num_facets),
+          body.num_facets,     has_small_gauss_map(body.affine_dimension, body.num_vertices),
+          body.width,          body.caller_width};
 }
 
 /// Adds a table of directions, in memory of its own: its size shows only when it is made.
@@ -279,7 +309,7 @@ std::vector<std::int32_t> place_vertices(std::span<const HullVertex> vertices, c
     out.x[i] = p.x;
     out.y[i] = p.y;
     out.z[i] = p.z;
-    out.caller_ids[i] = p.caller_id;
+    out.caller_ids.set(i, p.caller_id);
     out.storage->max_abs_coordinates = out.storage->max_abs_coordinates.cwiseMax(Vec3(p.x, p.y, p.z).cwiseAbs());
   }
   pad(out, n);
@@ -296,20 +326,21 @@ void place_facets(const FacetLoops& loops, const std::vector<std::int32_t>& rank
       write_surface(connect(loops, rank), out, n);
     }
     for (int f = 0; f < n.facets; ++f) {
-      const std::int32_t* loop = out.facet_vertices + out.facet_offsets[f];
-      const auto corner = [&](int i) { return Vec3(out.x[loop[i]], out.y[loop[i]], out.z[loop[i]]); };
+      const std::int32_t first = out.facet_offsets[f];
+      const auto corner = [&](int i) {
+        const std::int32_t v = out.facet_vertices[first + i];
+        return Vec3(out.x[v], out.y[v], out.z[v]);
+      };
       out.facet_normals[f] = plane_normal(corner(0), corner(1), corner(2));
     }
   } else {
-    out.facet_offsets[0] = 0;
-    out.neighbour_offsets[0] = 0;
-    out.neighbour_offsets[1] = affine_dimension;
+    out.facet_offsets.set_all({0});
+    out.neighbour_offsets.set_all({0, affine_dimension});
     if (affine_dimension == 1) {
-      out.neighbour_offsets[2] = 2;
-      out.neighbours[0] = 1;
-      out.neighbours[1] = 0;
-      out.half_edges[0] = {0, 1, 1, -1};
-      out.half_edges[1] = {1, 0, 0, -1};
+      out.neighbour_offsets.set(2, 2);
+      out.neighbours.set_all({1, 0});
+      out.twins.set_all({1, 0});
+      out.left_facets.set_all({-1, -1});
     }
   }
 }
@@ -330,14 +361,17 @@ void publish(const Arrays& out, const Counts& n, int affine_dimension) {
   s.x = out.x;
   s.y = out.y;
   s.z = out.z;
-  s.caller_ids = out.caller_ids;
-  s.neighbour_offsets = out.neighbour_offsets;
-  s.neighbours = out.neighbours;
-  s.half_edges = out.half_edges;
-  s.facet_offsets = out.facet_offsets;
-  s.facet_vertices = out.facet_vertices;
-  s.facet_half_edges = out.facet_half_edges;
+  s.caller_ids = out.caller_ids.bytes;
+  s.neighbour_offsets = out.neighbour_offsets.bytes;
+  s.neighbours = out.neighbours.bytes;
+  s.twins = out.twins.bytes;
+  s.left_facets = out.left_facets.bytes;
+  s.facet_offsets = out.facet_offsets.bytes;
+  s.facet_vertices = out.facet_vertices.bytes;
+  s.facet_half_edges = out.facet_half_edges.bytes;
   s.facet_normals = out.facet_normals;
+  s.width = n.width;
+  s.caller_width = n.caller_width;
 }
 
 /// The rest, of a body whose vertices and facets are written, but for a table of directions.
@@ -369,6 +403,8 @@ std::shared_ptr<const Storage> lay_out(std::span<const HullVertex> vertices, con
   n.half_edges = affine_dimension == 1 ? 2 : n.facet_vertices;
   n.facets = loops.size();
   n.has_gauss_map = has_small_gauss_map(affine_dimension, n.vertices);
+  n.width = width_of_indices(n);
+  n.caller_width = width_of_callers(vertices);
 
   const Allocated made = allocate(n);
   const Arrays& out = made.arrays;
@@ -397,7 +433,7 @@ std::shared_ptr<const Storage> scaled_exactly(const Storage& body, int exponent)
       body.max_abs_coordinates.unaryExpr([&](double x) { return std::ldexp(x, exponent); });
   out.storage->max_abs_coordinate = std::ldexp(body.max_abs_coordinate, exponent);
   std::copy_n(body.facet_normals, n.facets, out.facet_normals);
-  std::copy_n(body.caller_ids, n.vertices, out.caller_ids);
+  std::copy_n(body.caller_ids, static_cast<std::size_t>(n.vertices) * n.caller_width.bytes(), out.caller_ids.bytes);
   copy_surface(body, n, out);
   publish(out, n, body.affine_dimension);
   const double spread = body.second_moments.trace();
@@ -429,16 +465,18 @@ std::shared_ptr<const Storage> lay_out_box(std::span<const HullVertex, 8> corner
     }
     return lay_out(vertices, sides_of_box(), 3);
   }();
-  const Counts n = counts_of(*cube);
+  Counts n = counts_of(*cube);
+  n.caller_width = width_of_callers(corners);
   const Allocated made = allocate(n);
   const Arrays& out = made.arrays;
-  for (int v = 0; v < 8; ++v) {
+  const IndexList corner_of_cube(cube->caller_ids, 0, 8, cube->caller_width);
+  for (std::size_t v = 0; v < 8; ++v) {
     // In the order of coordinates x changes last.
-    const HullVertex& corner = corners[static_cast<std::size_t>(cube->caller_ids[v])];
+    const HullVertex& corner = corners[static_cast<std::size_t>(corner_of_cube[v])];
     out.x[v] = corner.x;
     out.y[v] = corner.y;
     out.z[v] = corner.z;
-    out.caller_ids[v] = corner.caller_id;
+    out.caller_ids.set(static_cast<std::int32_t>(v), corner.caller_id);
   }
   const HullVertex &low = corners[0], &high = corners[7];
   out.storage->max_abs_coordinates =

@@ -48,14 +48,14 @@ Mat3 second_moments(const ConvexPolytope::Storage& body) {
   Vec3 leaning = Vec3::Zero();
   Moments moments;
   for (std::int32_t f = 0; f < body.num_facets && body.affine_dimension == 3; ++f) {
-    const std::int32_t* const loop = body.facet_vertices;
-    const std::int32_t end = body.facet_offsets[f + 1];
-    std::int32_t i = body.facet_offsets[f];
-    const Vec3 p = from_centre(loop[i]);
-    Vec3 q = from_centre(loop[i + 1]);
+    const auto corner = [&](std::int32_t i) { return from_centre(body.index(body.facet_vertices, i)); };
+    const std::int32_t end = body.facet_offset(f + 1);
+    std::int32_t i = body.facet_offset(f);
+    const Vec3 p = corner(i);
+    Vec3 q = corner(i + 1);
     Vec3 pq = p + q;
     for (i += 2; i < end; ++i) {
-      const Vec3 r = from_centre(loop[i]);
+      const Vec3 r = corner(i);
       const Vec3 qr = q + r, rp = r + p;
       const double six_volumes = p.cross(q).dot(r);
       volume += six_volumes;

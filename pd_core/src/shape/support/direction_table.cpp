@@ -61,8 +61,8 @@ PD_CLONES std::int32_t list_vertices(const Storage& p, const Corners& corners, s
     bool beaten = false;
     // Its neighbours are written behind the others, and stay where it is not beaten.
     std::int32_t next = opened;
-    for (std::int32_t i = p.neighbour_offsets[v]; i < p.neighbour_offsets[v + 1]; ++i) {
-      const std::int32_t w = p.neighbours[i];
+    for (std::int32_t i = p.first_half_edge(v), end = p.first_half_edge(v + 1); i < end; ++i) {
+      const std::int32_t w = p.target(i);
       const Rises rises = rises_of(p.x[w] - x, p.y[w] - y, p.z[w] - z, corners, level);
       beaten = rises.everywhere;
       if (beaten) break;
@@ -143,11 +143,11 @@ class TableBuilder {
     double value = vertex(v).dot(d);
     for (;;) {
       const std::int32_t from = v;
-      for (std::int32_t i = p_.neighbour_offsets[from]; i < p_.neighbour_offsets[from + 1]; ++i) {
-        const double other = vertex(p_.neighbours[i]).dot(d);
+      for (std::int32_t i = p_.first_half_edge(from), end = p_.first_half_edge(from + 1); i < end; ++i) {
+        const double other = vertex(p_.target(i)).dot(d);
         if (other <= value) continue;
         value = other;
-        v = p_.neighbours[i];
+        v = p_.target(i);
       }
       if (v == from) return v;
     }

@@ -74,7 +74,7 @@ void clip_to_charts(const PosedPair& pair, bool of_a, std::array<std::vector<Cha
   for (std::vector<ChartSegment>& chart : charts) chart.clear();
   ArcClipper clipper(charts);
   for (int h = 0; h < body.num_half_edges(); ++h) {
-    const HalfEdge& e = body.half_edge(h);
+    const HalfEdge e = body.half_edge(h);
     if (e.twin < h) continue;
     if (e.facet < 0) {  // a segment: the whole great circle
       const Vec3 axis = unit_edge(h);

@@ -19,8 +19,8 @@ namespace pd::detail {
 inline std::optional<OverlayPiece> edge_crossing(const OverlayWalk& walk, int half_edge_a, int half_edge_b) {
   const ConvexPolytope& body_a = walk.pair().a();
   const ConvexPolytope& body_b = walk.pair().b();
-  const HalfEdge& a = body_a.half_edge(half_edge_a);
-  const HalfEdge& b = body_b.half_edge(half_edge_b);
+  const HalfEdge a = body_a.half_edge(half_edge_a);
+  const HalfEdge b = body_b.half_edge(half_edge_b);
   int s = 0;
   if (b.facet >= 0) {
     s = walk.side_of_edge_a(half_edge_a, b.facet);

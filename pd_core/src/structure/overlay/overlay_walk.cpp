@@ -175,7 +175,7 @@ bool OverlayWalk::walk_segment(const Side& segment, const Side& other) {
     // From the left facet to the right one the normal turns about the edge e. Where <segment, n> falls through 0,
     // n = e x segment up to a positive factor; with both bodies' signs (P's normal is minus A's) this is always
     // (edge of B) x (edge of A) when h is the one of the two half-edges whose left facet has the sign +.
-    const HalfEdge& e = body.half_edge(h);
+    const HalfEdge e = body.half_edge(h);
     const int left = other.diagram->cell[static_cast<std::size_t>(e.facet)];
     const int right = other.diagram->cell[static_cast<std::size_t>(body.half_edge(e.twin).facet)];
     if (left == 0 && right == 1 && !emit(other, h, half_edge, OverlayPiece::Kind::edges)) return false;
@@ -228,7 +228,7 @@ void OverlayWalk::locate_facets(const Side& moving, const Side& fixed) {
 
     const int start = body.facet_half_edge(visit.facet);
     for (int h = start;;) {
-      const HalfEdge& half_edge = body.half_edge(h);
+      const HalfEdge half_edge = body.half_edge(h);
       const int next = body.half_edge(half_edge.twin).facet;
       if (moving.diagram->cell[static_cast<std::size_t>(next)] < 0) {
         const double cosine = body.facet_normal(visit.facet).dot(body.facet_normal(next));

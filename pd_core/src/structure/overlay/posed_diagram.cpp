@@ -31,7 +31,7 @@ void pose_edges(const PosedPair& pair, bool of_a, PosedDiagram& diagram) {
   diagram.half_edges.resize(static_cast<std::size_t>(body.num_half_edges()));
   double total = 0;
   for (int h = 0; h < body.num_half_edges(); ++h) {
-    const HalfEdge& half_edge = body.half_edge(h);
+    const HalfEdge half_edge = body.half_edge(h);
     const Vec3 v = diagram.points[static_cast<std::size_t>(body.half_edge(half_edge.twin).origin)] -
                    diagram.points[static_cast<std::size_t>(half_edge.origin)];
     const double size = norm1(v);
