@@ -25,14 +25,6 @@ constexpr double kLeftOpen = 0x1p-10;
 /// What a pair in contact may sink by in a part of a step is the slop less what it has sunk in the step already, and
 /// this share of the slop at the least: a pair that sinks on and on is cut at finite lengths.
 constexpr double kLeastSlop = 0.25;
-/// A pair that sank less than this share of the slop has not come in yet.
-constexpr double kNotIn = 0.02;
-/// Looks at a motion that sinks by the slop, the last of which that finds the pair out is where it came in; none in the
-/// first quarter, so that pairs that sink steadily are not cut there.
-constexpr int kLooks = 8;
-constexpr int kFirstLook = 2;
-/// To 1/2000 of the motion; trials do the rest.
-constexpr int kHalvings = 8;
 
 }  // namespace
 
@@ -94,7 +86,13 @@ void ImpactSearch::add_pieces(btCollisionObject* object, const btCollisionShape*
 void ImpactSearch::mark_start() {
   surroundings_.clear();
   starts_.clear();
-  for (Body& body : bodies_) body.start = body.object->getWorldTransform();
+  for (Body& body : bodies_) {
+    body.start = body.object->getWorldTransform();
+    if (const btRigidBody* rigid = btRigidBody::upcast(body.object)) {
+      body.linear = rigid->getLinearVelocity();
+      body.angular = rigid->getAngularVelocity();
+    }
+  }
 }
 
 double ImpactSearch::farthest_way() const {
@@ -233,12 +231,9 @@ void ImpactSearch::search_convex(const Body& a, const Piece& pa, const Body& b, 
   impact.depth = quick_;
   impact.at_start = &before;
   // From where it is, a pair in contact may sink; then the step is cut, and Bullet sees it there.
-  const double depth = std::max(-start, 0.0);
-  if (start <= settings.in_contact) impact.allowed_depth = allowed_depth(pa, pb, depth, settings);
+  if (start <= settings.in_contact) impact.allowed_depth = allowed_depth(pa, pb, std::max(-start, 0.0), settings);
   const TimeOfImpact hit = time_of_impact(moving_a, moving_b, std::min(duration_, found.time), scratch_, impact);
-  if (!(hit.hit && hit.time < found.time)) return;
-  found = {pa, pb, hit.time, impact.allowed_depth};
-  if (impact.allowed_depth > 0) end_where_it_came_in(moving_a, moving_b, depth, settings, found);
+  if (hit.hit && hit.time < found.time) found = {pa, pb, hit.time, impact.allowed_depth};
 }
 
 std::size_t ImpactSearch::place_of(const Piece& a, const Piece& b) const {
@@ -249,30 +244,6 @@ std::size_t ImpactSearch::place_of(const Piece& a, const Piece& b) const {
 double ImpactSearch::allowed_depth(const Piece& a, const Piece& b, double depth, const Settings& settings) {
   const double first = first_depths_.emplace(place_of(a, b), depth).first->second;
   return depth + std::max(settings.slop - std::max(depth - first, 0.0), kLeastSlop * settings.slop);
-}
-
-void ImpactSearch::end_where_it_came_in(const MovingShape& a, const MovingShape& b, double depth,
-                                        const Settings& settings, FoundImpact& found) {
-  const double allowed = depth + kNotIn * settings.slop;
-  const auto is_out = [&](double time) {
-    const PenetrationDepth answer =
-        penetration_depth({a.start.shape, pose_at(a, time)}, {b.start.shape, pose_at(b, time)}, scratch_, quick_);
-    return allowed + answer.signed_distance() > 0;
-  };
-  double low = 0;
-  double high = found.time;
-  for (int k = kLooks - 1; k >= kFirstLook && low == 0; --k) {
-    const double time = found.time * k / kLooks;
-    (is_out(time) ? low : high) = time;
-  }
-  if (low == 0) return;
-  for (int k = 0; k < kHalvings; ++k) {
-    const double middle = 0.5 * (low + high);
-    (is_out(middle) ? low : high) = middle;
-  }
-  found.time = low;
-  found.allowed_depth = allowed;
-  found.comes_in = true;
 }
 
 void ImpactSearch::swept_box(const Body& a, const Piece& pa, const Body& b, const Piece& pb, btVector3& lower,
@@ -422,8 +393,8 @@ void ImpactSearch::search_concave(const Body& a, const Piece& pa, const Body& b,
   impact.distance_tolerance = 0.5 * settings.gap;
   impact.contact_at_end = false;
   impact.depth = quick_;
-  double depth = 0;
   if (in_contact) {
+    double depth = 0;
     for (Surface& triangle : surface) {
       if (-triangle.bound > depth) depth = std::max(depth, -ask_start(pair, triangle));
     }
@@ -439,7 +410,6 @@ void ImpactSearch::search_concave(const Body& a, const Piece& pa, const Body& b,
     if (hit.hit && hit.time < found.time) {
       found = {pa, pb, hit.time, impact.allowed_depth};
       found.b.cached = triangle.shape;
-      if (impact.allowed_depth > 0) end_where_it_came_in(moving_a, moving_b, depth, settings, found);
     }
   }
 }
@@ -450,12 +420,15 @@ PenetrationDepth ImpactSearch::measure(const FoundImpact& impact, const btTransf
                            {&of_b.beside(of_a), impact.b.with_body_at(b)}, scratch_, quick_);
 }
 
-btTransform ImpactSearch::pose_on_the_way(const btCollisionObject& object, double time) const {
+btTransform ImpactSearch::pose_after(const btCollisionObject& object, double time) const {
   const auto body = std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& b) { return b.object == &object; });
   btTransform pose = object.getWorldTransform();
   if (body == bodies_.end() || body->travel == 0) return pose;
-  btTransformUtil::integrateTransform(body->start, to_bullet(body->motion.linear_velocity),
-                                      to_bullet(body->motion.angular_velocity), static_cast<btScalar>(time), pose);
+  // What a bounce adds does not depend on the length.
+  const auto share = static_cast<btScalar>(object.getRestitution() > 0 ? 1 : time / duration_);
+  btTransformUtil::integrateTransform(body->start, body->linear.lerp(to_bullet(body->motion.linear_velocity), share),
+                                      body->angular.lerp(to_bullet(body->motion.angular_velocity), share),
+                                      static_cast<btScalar>(time), pose);
   return pose;
 }
 

@@ -37,7 +37,6 @@ struct FoundImpact {
   Piece b;
   double time = 0;
   double allowed_depth = 0;  ///< 0: a first contact
-  bool comes_in = false;     ///< the pair was in contact and out of it in between
 };
 
 class ImpactSearch {
@@ -66,8 +65,10 @@ class ImpactSearch {
   }
   /// With its bodies elsewhere.
   [[nodiscard]] PenetrationDepth measure(const FoundImpact& impact, const btTransform& a, const btTransform& b);
-  /// Where the body of the world was after `time` of the motion that was searched last.
-  [[nodiscard]] btTransform pose_on_the_way(const btCollisionObject& object, double time) const;
+  /// Returns where a body of the world would be at the end of a motion of length `time`, if forces change its velocity
+  /// at a constant rate: Bullet moves it for all of a step by the velocity at the step's end. The motion that was
+  /// searched last tells the rate. Bodies that bounce have that motion's velocity all the way.
+  [[nodiscard]] btTransform pose_after(const btCollisionObject& object, double time) const;
 
  private:
   struct Body {
@@ -76,6 +77,7 @@ class ImpactSearch {
     int num_pieces = 0;
     double radius = 0;  ///< of all pieces about the body's origin; infinite with a concave child
     btTransform start = btTransform::getIdentity();
+    btVector3 linear = btVector3(0, 0, 0), angular = btVector3(0, 0, 0);  ///< velocities at `start`
     RigidMotion motion = {};
     double travel = 0;  ///< no point of it moves farther
     btVector3 lower = btVector3(0, 0, 0);
@@ -95,10 +97,6 @@ class ImpactSearch {
                      FoundImpact& found);
   /// How deep a pair in contact, at present `depth` deep, may be at the end of the motion.
   double allowed_depth(const Piece& a, const Piece& b, double depth, const Settings& settings);
-  /// The found pair was in contact, `depth` deep, and sinks deeper than it may. Where it is out again before (one
-  /// corner leaves, the next comes in), its time becomes that at which it comes in, and Bullet meets it there.
-  void end_where_it_came_in(const MovingShape& a, const MovingShape& b, double depth, const Settings& settings,
-                            FoundImpact& found);
   void search_concave(const Body& a, const Piece& pa, const Body& b, const Piece& pb, const Settings& settings,
                       FoundImpact& found);
   [[nodiscard]] static SupportLevel level_of(const StillTriangle& triangle, const Vec3& towards);

@@ -47,9 +47,6 @@ constexpr int kMostForeseen = 8;
 constexpr double kDeepEnough = 0.4;
 /// The shortest trial that `TrialEnd::before` proposes, as a share of the trial before it.
 constexpr double kLeastShare = 1.0 / 16;
-/// Trials for one contact after which, where none was free of contacts, one of the least length says whether any is.
-/// Later (10) the parts that follow are short, and the cap on cuts is reached in ten times as many steps.
-constexpr int kTrialsBeforeLeast = 4;
 /// Trials for one contact after which one that meets nothing is taken for a part of its own: what stands in their way
 /// (motions that jump between two lengths of a part, contacts that brake each other) looks different from nearer by.
 constexpr int kPatience = 4;
@@ -142,15 +139,14 @@ struct RollbackStepper::State {
   [[nodiscard]] bool is_just_before(const detail::FoundImpact& impact, double time, double clearance,
                                     const PenetrationDepth& contact) const;
   /// True if the part ends because a pair in contact sinks, at a depth that is no matter of digits.
-  [[nodiscard]] static bool sinks(const detail::FoundImpact& impact) {
-    return impact.allowed_depth > 0 && !impact.comes_in;
-  }
+  [[nodiscard]] static bool sinks(const detail::FoundImpact& impact) { return impact.allowed_depth > 0; }
   /// Returns the clearance that a part is to leave to the impact's pair: the middle of those with which it may end.
   [[nodiscard]] double aim(const detail::FoundImpact& impact) const {
     return sinks(impact) ? 0.5 * kDeepEnough * settings.contact_slop : 0.75 * settings.gap;
   }
   /// Computes when a part is to end so that about the clearance of `aim` is left, on the motion that a shorter part
-  /// would make. If that motion is not known, the motion of the last trial stands for it. @return less than `end`.
+  /// would make: that of a flight, or one whose velocities change at the rate of the last trial. @return less than
+  /// `end`.
   [[nodiscard]] double foresee(const detail::FoundImpact& impact, double end);
   /// True if a part whose motion met nothing ended where the impact's pair meets.
   [[nodiscard]] bool is_at(const detail::FoundImpact& impact, double clearance) const;
@@ -186,7 +182,7 @@ bool RollbackStepper::State::is_at(const detail::FoundImpact& impact, double cle
 double RollbackStepper::State::foresee(const detail::FoundImpact& impact, double end) {
   const auto pose_at = [&](const btCollisionObject& body, double time) {
     btTransform pose;
-    return parts.predict(body, time, pose) ? pose : search.pose_on_the_way(body, time);
+    return parts.predict(body, time, pose) ? pose : search.pose_after(body, time);
   };
   double time = impact.time;
   const double wanted = aim(impact);
@@ -249,8 +245,6 @@ double RollbackStepper::State::advance_to(detail::FoundImpact& impact, double fr
       if (closing > 0) next = time + (clearance - aim(impact)) / closing;
     }
     if (!(next > low && next < high)) next = 0.5 * (low + high);
-    // Where no trial was free yet, the least part says whether any is.
-    if (meets && low == 0 && trials == kTrialsBeforeLeast) next = std::min(next, least);
     const bool no_finer = static_cast<btScalar>(next) == static_cast<btScalar>(time);
     if (next >= least && trials < settings.max_trials && !no_finer) {
       time = next;
