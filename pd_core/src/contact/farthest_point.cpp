@@ -1,8 +1,7 @@
 #include "pd/contact/farthest_point.hpp"
 
-#include <cmath>
-
 #include "depth/difference/smooth_difference.hpp"
+#include "shape/support/vertex_arrays.hpp"
 
 namespace pd {
 
@@ -14,15 +13,7 @@ Vec3 farthest_point(const PosedShape& posed, const Vec3& direction) {
            posed.pose.translation();
   }
   const Vec3 local = posed.pose.rotation().transpose() * direction;
-  int farthest = 0;
-  double most = -HUGE_VAL;
-  for (int v = 0; v < polytope->num_vertices(); ++v) {
-    const double value = polytope->vertex(v).dot(local);
-    if (value > most) {
-      most = value;
-      farthest = v;
-    }
-  }
+  const int farthest = detail::farthest_vertex(detail::arrays_of(*polytope), local.x(), local.y(), local.z());
   return posed.pose.apply(polytope->vertex(farthest));
 }
 
