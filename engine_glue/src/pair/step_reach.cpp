@@ -13,7 +13,9 @@ namespace {
 
 /// Shares of the threshold.
 constexpr btScalar kNear = btScalar(0.25), kNearOfPieces = btScalar(0.5);
-constexpr btScalar kNearOfLinks = btScalar(1. / 64);
+constexpr btScalar kNearBeside = btScalar(1. / 64), kNearOfLinks = kNearBeside;
+/// Forces press bodies together if this share of what they add leads one against the other.
+constexpr btScalar kPressing = btScalar(0.25);
 constexpr btScalar kClosing = 2;
 /// Bodies that touch without a load are less deep in each other than this share of the breaking threshold.
 constexpr btScalar kTouching = btScalar(1e-3);
@@ -68,9 +70,14 @@ btScalar StepReach::closing_alone(const btVector3& place, const btVector3& norma
   return std::max({of_a + of_b, of_a, of_b});
 }
 
+bool StepReach::are_pressed(const btVector3& normal) const {
+  const btScalar least = kPressing * std::max(a_.gained.length(), b_.gained.length());
+  return std::max(-a_.gained.dot(normal), b_.gained.dot(normal)) > least;
+}
+
 bool StepReach::may_be_idle(const FreshPoints& points, btScalar threshold) {
   for (int k = 0; k < points.count; ++k) {
-    if (points.points[k].distance > kNear * threshold) return true;
+    if (points.points[k].distance > kNearBeside * threshold) return true;
   }
   return false;
 }
@@ -78,7 +85,8 @@ bool StepReach::may_be_idle(const FreshPoints& points, btScalar threshold) {
 void StepReach::leave_out_idle(FreshPoints& points) const {
   if (all_) return;
   keep_points(points, [this](const FreshPoint& point) {
-    return is_needed(point.distance, closing_alone(point.point_on_b, point.normal), kNear * threshold_);
+    const btScalar near = are_pressed(point.normal) ? kNear : kNearBeside;
+    return is_needed(point.distance, closing_alone(point.point_on_b, point.normal), near * threshold_);
   });
 }
 

@@ -6,11 +6,12 @@
 /// apart by more than a quarter of the breaking threshold and twice what the bodies' velocities and forces close until
 /// the next step; the quarter and the two are for what other contacts may do meanwhile. A box that moves may
 /// be stopped by another one: a column that falls as one lands box by box, so that each box's own speed counts as well.
-/// Of parts of compounds it is
-/// half the threshold: they are linked, and a chain that tautens moves faster than it did. A row of a multibody costs
-/// ten times a row of a rigid body. So of links it is a sixty-fourth, whatever their shapes: a point that a motor's
-/// blow brings nearer than that in one step is handed out in the next one. Points of other rigid bodies are all handed
-/// out, since looking for idle ones costs as much as they do.
+/// Boxes side by side, which no force presses together, as the bricks of a course of a wall, have a sixty-fourth in
+/// place of the quarter: a fifth of a wall's points would be theirs. Of parts of compounds it is half the threshold:
+/// they are linked, and a chain that tautens moves faster than it did. A row of a multibody costs ten times a row of a
+/// rigid body. So of links it is a sixty-fourth, whatever their shapes: a point that a motor's blow brings nearer than
+/// that in one step is handed out in the next one. Points of other rigid bodies are all handed out, since looking for
+/// idle ones costs as much as they do.
 ///
 /// Boxes that fly together, as a block that falls, touch without a load. Their points are needed where one of them may
 /// be stopped, that is, where its own speed leads against the other.
@@ -79,6 +80,8 @@ class StepReach {
   [[nodiscard]] bool is_needed(btScalar distance, btScalar closing, btScalar near) const;
   /// Below this, a difference of two bodies' speeds is rounding.
   [[nodiscard]] btScalar noise_of_speeds() const;
+  /// True if the forces on one of the bodies lead it against the other along a normal (unit, from B to A).
+  [[nodiscard]] bool are_pressed(const btVector3& normal) const;
   /// How fast two bodies may come together at a place, if another contact stops one of them.
   [[nodiscard]] btScalar closing_alone(const btVector3& place, const btVector3& normal) const;
 
