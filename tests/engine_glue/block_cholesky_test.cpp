@@ -43,7 +43,7 @@ TEST(BlockCholesky, SolvesAsTheDenseMatrixDoes) {
     const Eigen::VectorXd right = Eigen::VectorXd::NullaryExpr(6 * bodies, [&] { return normal(random); });
     factor.set_pattern(bodies, pairs);
     for (int again = 0; again < 2; ++again) {
-      factor.factorise(own, shared);
+      factor.factorise(own, shared, std::vector<bool>(own.size(), true));
       Eigen::VectorXd x = right;
       factor.solve(x);
       EXPECT_LT((dense * x - right).norm(), 1e-10 * right.norm()) << trial;
@@ -73,7 +73,7 @@ TEST(BlockCholesky, ChangesLeaveTheBitsOfAFactorisationOfTheWhole) {
     for (std::size_t i = 0; i < pairs.size(); ++i) shared.push_back(block());
     BlockCholesky changed, whole;
     changed.set_pattern(bodies, pairs);
-    changed.factorise(own, shared);
+    changed.factorise(own, shared, std::vector<bool>(own.size(), true));
     whole.set_pattern(bodies, pairs);
     for (unsigned one_in = 1; one_in <= 16; one_in *= 2) {
       std::vector<bool> is_changed;
@@ -86,7 +86,7 @@ TEST(BlockCholesky, ChangesLeaveTheBitsOfAFactorisationOfTheWhole) {
         if (is_changed[static_cast<std::size_t>(a)] && is_changed[static_cast<std::size_t>(b)]) shared[i] = block();
       }
       changed.factorise(own, shared, is_changed);
-      whole.factorise(own, shared);
+      whole.factorise(own, shared, std::vector<bool>(own.size(), true));
       Eigen::VectorXd x = Eigen::VectorXd::NullaryExpr(6 * bodies, [&] { return normal(random); });
       Eigen::VectorXd y = x;
       changed.solve(x);
@@ -111,7 +111,7 @@ TEST(BlockCholesky, SolvesAPileOfFiveThousandBodies) {
   const std::vector<Block> own(kBodies, 5 * Block::Identity()), shared(pairs.size(), -Block::Identity());
   BlockCholesky factor;
   factor.set_pattern(kBodies, pairs);
-  factor.factorise(own, shared);
+  factor.factorise(own, shared, std::vector<bool>(own.size(), true));
   const Eigen::VectorXd expected = Eigen::VectorXd::LinSpaced(6 * kBodies, -1, 1);
   Eigen::VectorXd x = 5 * expected;
   for (const auto& [a, b] : pairs) {

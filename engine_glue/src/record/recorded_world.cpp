@@ -56,12 +56,17 @@ const btCollisionShape* leaf_of(const btCollisionObject& object, int index) {
 
 bool is_mesh(const btCollisionShape& shape) { return shape.isConcave() && has_parts(shape); }
 
-/// What `ask` says of the dispatcher's algorithm for two shapes.
+/// What `ask` says of the dispatcher's algorithm for two shapes; for a triangle of those that are meshes.
 template <class Ask>
 bool algorithm_is(btCollisionDispatcher& dispatcher, const btCollisionObject& a, const btCollisionShape& shape_a,
                   const btCollisionObject& b, const btCollisionShape& shape_b, Ask&& ask) {
-  const btCollisionObjectWrapper wrapper_a(nullptr, &shape_a, &a, a.getWorldTransform(), -1, -1);
-  const btCollisionObjectWrapper wrapper_b(nullptr, &shape_b, &b, b.getWorldTransform(), -1, -1);
+  const btTriangleShape triangle(btVector3(0, 0, 0), btVector3(1, 0, 0), btVector3(0, 1, 0));
+  const auto asked = [&](const btCollisionShape& shape) -> const btCollisionShape* {
+    if (is_mesh(shape)) return &triangle;
+    return &shape;
+  };
+  const btCollisionObjectWrapper wrapper_a(nullptr, asked(shape_a), &a, a.getWorldTransform(), -1, -1);
+  const btCollisionObjectWrapper wrapper_b(nullptr, asked(shape_b), &b, b.getWorldTransform(), -1, -1);
   btCollisionAlgorithm* algorithm =
       dispatcher.findAlgorithm(&wrapper_a, &wrapper_b, nullptr, BT_CONTACT_POINT_ALGORITHMS);
   if (algorithm == nullptr) return false;
@@ -86,10 +91,7 @@ bool meets_bare_triangles(btCollisionDispatcher& dispatcher, const btCollisionOb
     return ball.getShapeType() == SPHERE_SHAPE_PROXYTYPE && is_mesh(mesh);
   };
   if (!ball_on_mesh(leaf_a, leaf_b) && !ball_on_mesh(leaf_b, leaf_a)) return false;
-  const btTriangleShape triangle(btVector3(0, 0, 0), btVector3(1, 0, 0), btVector3(0, 1, 0));
-  const btCollisionShape& asked_a = is_mesh(leaf_a) ? static_cast<const btCollisionShape&>(triangle) : leaf_a;
-  const btCollisionShape& asked_b = is_mesh(leaf_b) ? static_cast<const btCollisionShape&>(triangle) : leaf_b;
-  return algorithm_is(dispatcher, a, asked_a, b, asked_b, [](const btCollisionAlgorithm& algorithm) {
+  return algorithm_is(dispatcher, a, leaf_a, b, leaf_b, [](const btCollisionAlgorithm& algorithm) {
     return dynamic_cast<const btSphereTriangleCollisionAlgorithm*>(&algorithm) != nullptr;
   });
 }
@@ -112,10 +114,7 @@ SharpBoxes sharp_boxes(btCollisionDispatcher& dispatcher, const btCollisionObjec
     return {!rounded, !rounded};
   }
   if (!a.getCollisionShape()->isCompound() && !b.getCollisionShape()->isCompound()) return {};
-  const btTriangleShape triangle(btVector3(0, 0, 0), btVector3(1, 0, 0), btVector3(0, 1, 0));
-  const btCollisionShape& asked_a = is_mesh(leaf_a) ? static_cast<const btCollisionShape&>(triangle) : leaf_a;
-  const btCollisionShape& asked_b = is_mesh(leaf_b) ? static_cast<const btCollisionShape&>(triangle) : leaf_b;
-  const bool parts = algorithm_is(dispatcher, a, asked_a, b, asked_b, [](const btCollisionAlgorithm& algorithm) {
+  const bool parts = algorithm_is(dispatcher, a, leaf_a, b, leaf_b, [](const btCollisionAlgorithm& algorithm) {
     const auto* own = dynamic_cast<const ContactAlgorithm*>(&algorithm);
     return own != nullptr && own->sharp_parts();
   });

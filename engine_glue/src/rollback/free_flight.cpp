@@ -112,7 +112,7 @@ void FreeFlight::note_start() {
   for (int i = 0; i < objects.size(); ++i) {
     Start& start = starts_[static_cast<std::size_t>(i)];
     start.flew = false;
-    if (const btRigidBody* body = dynamic_body(objects[i])) {
+    if (const btRigidBody* body = btRigidBody::upcast(objects[i])) {
       start.pose = body->getWorldTransform();
       start.linear = body->getLinearVelocity();
       start.angular = body->getAngularVelocity();
@@ -144,8 +144,7 @@ bool FreeFlight::leaves(const btPersistentManifold& manifold, btScalar step) con
   const btRigidBody* b = btRigidBody::upcast(manifold.getBody1());
   if (a == nullptr || b == nullptr) return false;
   const auto moves = [&](const btRigidBody& body, const btVector3& point, btVector3& velocity, btVector3& way) {
-    velocity = body.getVelocityInLocalPoint(
-        point - starts_[static_cast<std::size_t>(body.getWorldArrayIndex())].pose.getOrigin());
+    velocity = body.getVelocityInLocalPoint(point - start_of(body).pose.getOrigin());
     way = step * velocity;
     if (const Bounce* bounce = bounce_of(&body)) way += btScalar(0.5) * step * step * body.getInvMass() * bounce->force;
   };
@@ -249,7 +248,7 @@ void FreeFlight::finish(btScalar step) {
 bool FreeFlight::predict(const btCollisionObject& object, double time, btTransform& pose) const {
   const btRigidBody* body = dynamic_body(&object);
   if (body == nullptr) return false;
-  const Start& start = starts_[static_cast<std::size_t>(object.getWorldArrayIndex())];
+  const Start& start = start_of(object);
   if (!start.flew) return false;
   const auto t = static_cast<btScalar>(time);
   btTransformUtil::integrateTransform(start.pose, start.linear, start.angular, t, pose);

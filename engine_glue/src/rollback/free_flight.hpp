@@ -24,6 +24,17 @@ namespace pd::detail {
 
 class FreeFlight {
  public:
+  /// How a body was when the step began; by place in the world's array.
+  struct Start {
+    btTransform pose;
+    btVector3 linear;
+    btVector3 angular;
+    btVector3 acceleration;
+    bool touched = false;
+    bool flew = false;
+    bool turned = false;  ///< its turning is `rotate_freely`, too
+  };
+
   explicit FreeFlight(btDiscreteDynamicsWorld& world) : world_(world) {}
 
   /// Two bodies that meet at the end of a part. If both have restitution, and one of them touches nothing but the
@@ -42,6 +53,10 @@ class FreeFlight {
   bool misjudged(btScalar step);
   /// Moves the bodies that flew. Once, after the step that is not made again.
   void finish(btScalar step);
+  /// How a rigid body of the world was when the step began.
+  [[nodiscard]] const Start& start_of(const btCollisionObject& object) const {
+    return starts_[static_cast<std::size_t>(object.getWorldArrayIndex())];
+  }
   /// Where the body would be after `time` of the motion that `finish` gave it, if it flew. @return whether it did.
   bool predict(const btCollisionObject& object, double time, btTransform& pose) const;
 
@@ -51,17 +66,6 @@ class FreeFlight {
     int flags;        ///< of the gyroscopic term, which is part of the flight
     btVector3 force;  ///< taken
   };
-  /// How a body was when the step began; by place in the world's array.
-  struct Start {
-    btTransform pose;
-    btVector3 linear;
-    btVector3 angular;
-    btVector3 acceleration;
-    bool touched = false;
-    bool flew = false;
-    bool turned = false;  ///< its turning is `rotate_freely`, too
-  };
-
   [[nodiscard]] Start& start_of(const btCollisionObject& object) {
     return starts_[static_cast<std::size_t>(object.getWorldArrayIndex())];
   }

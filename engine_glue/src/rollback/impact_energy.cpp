@@ -24,20 +24,9 @@ void ImpactEnergy::begin_part() {
   repeated_ = 0;
 }
 
-void ImpactEnergy::note_start(const btDiscreteDynamicsWorld& world) {
-  const auto& objects = world.getCollisionObjectArray();
-  start_.resize(static_cast<std::size_t>(objects.size()));
-  for (int i = 0; i < objects.size(); ++i) {
-    const btRigidBody* body = rigid(objects[i]);
-    if (body == nullptr) continue;
-    start_[static_cast<std::size_t>(i)] = {body->getWorldTransform().getOrigin(), body->getLinearVelocity(),
-                                           body->getAngularVelocity()};
-  }
-}
-
 btVector3 ImpactEnergy::velocity_before(const btRigidBody& body, const btVector3& point, btScalar step) const {
-  const Motion& start = start_[static_cast<std::size_t>(body.getWorldArrayIndex())];
-  const btVector3 arm = point - start.origin;
+  const FreeFlight::Start& start = flight_.start_of(body);
+  const btVector3 arm = point - start.pose.getOrigin();
   if (body.isStaticOrKinematicObject()) return body.getLinearVelocity() + body.getAngularVelocity().cross(arm);
   // As Bullet: damping, then the forces of the step.
   const btVector3 linear = start.linear * btPow(1 - body.getLinearDamping(), step) +
@@ -48,8 +37,8 @@ btVector3 ImpactEnergy::velocity_before(const btRigidBody& body, const btVector3
 }
 
 btVector3 ImpactEnergy::velocity_after(const btRigidBody& body, const btVector3& point) const {
-  const Motion& start = start_[static_cast<std::size_t>(body.getWorldArrayIndex())];
-  return body.getLinearVelocity() + body.getAngularVelocity().cross(point - start.origin);
+  const FreeFlight::Start& start = flight_.start_of(body);
+  return body.getLinearVelocity() + body.getAngularVelocity().cross(point - start.pose.getOrigin());
 }
 
 btScalar ImpactEnergy::share_of(const btPersistentManifold& manifold) const {

@@ -19,14 +19,17 @@
 #include <mutex>
 #include <vector>
 
+#include "rollback/free_flight.hpp"
+
 namespace pd::detail {
 
 class ImpactEnergy {
  public:
+  /// @param flight  knows how bodies moved before a step
+  explicit ImpactEnergy(const FreeFlight& flight) : flight_(flight) {}
+
   /// A part of a step begins: all pairs have their own restitution.
   void begin_part();
-  /// Notes how bodies move before a step.
-  void note_start(const btDiscreteDynamicsWorld& world);
   /// Whether a step was too good by its restitution: then the pairs at fault have less of it from here on, and the step
   /// is to be made again from where it began. False once a part has been made again as often as that may help.
   bool lessen(btDiscreteDynamicsWorld& world, btScalar step);
@@ -38,11 +41,6 @@ class ImpactEnergy {
   [[nodiscard]] bool any() const { return !pairs_.empty(); }
 
  private:
-  struct Motion {
-    btVector3 origin;
-    btVector3 linear;
-    btVector3 angular;
-  };
   /// What the contacts of a pair of bodies do.
   struct PairWork {
     const btCollisionObject* a;
@@ -63,7 +61,7 @@ class ImpactEnergy {
   [[nodiscard]] btVector3 velocity_before(const btRigidBody& body, const btVector3& point, btScalar step) const;
   [[nodiscard]] btVector3 velocity_after(const btRigidBody& body, const btVector3& point) const;
 
-  std::vector<Motion> start_;  ///< by place in the world's array
+  const FreeFlight& flight_;
   std::vector<PairWork> works_;
   std::vector<PairWork> pairs_;  ///< that have less restitution in this part
   std::vector<KeptRestitution> kept_;

@@ -102,8 +102,7 @@ void SubStepper::begin_part() {
 }
 
 void SubStepper::move(double from, double step, double gap, double slop) {
-  if (may_bounce_) energy_.note_start(world_);
-  if (exact_flight_) flight_.note_start();
+  if (may_bounce_ || exact_flight_) flight_.note_start();
   move_bodies(from, step, gap, slop);
   if (exact_flight_) flight_.give_back_flags();
   energy_.restore();

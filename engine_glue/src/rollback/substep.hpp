@@ -41,7 +41,7 @@ class SubStepper {
  public:
   /// @param exact_flight  as `RollbackSettings::exact_flight`
   SubStepper(btDiscreteDynamicsWorld& world, bool exact_flight)
-      : world_(world), exact_flight_(exact_flight), flight_(world) {}
+      : world_(world), exact_flight_(exact_flight), flight_(world), energy_(flight_) {}
 
   /// Notes the forces that the host has applied and where kinematic bodies are and are to be.
   void begin_frame(btScalar frame);
@@ -113,8 +113,8 @@ class SubStepper {
   std::vector<PairForce> pair_forces_;                                     ///< of the last frame that was not cut
   std::pair<const btCollisionObject*, const btCollisionObject*> sinking_;  ///< that the next part puts back
   std::pair<const btCollisionObject*, const btCollisionObject*> sunk_;     ///< that this one does
-  ImpactEnergy energy_;
   FreeFlight flight_;
+  ImpactEnergy energy_;
   HostActions actions_;
 };
 

@@ -85,15 +85,9 @@ void BlockCholesky::place_products() {
   }
 }
 
-void BlockCholesky::factorise(const std::vector<Block>& own, const std::vector<Block>& shared) {
-  if (!std::exchange(products_are_placed_, true)) place_products();
-  is_new_.assign(order_.size(), true);
-  reset_columns(own, shared);
-  eliminate();
-}
-
 void BlockCholesky::factorise(const std::vector<Block>& own, const std::vector<Block>& shared,
                               const std::vector<bool>& changed_bodies) {
+  if (!std::exchange(products_are_placed_, true)) place_products();
   is_new_.assign(order_.size(), false);
   for (std::size_t rank = 0; rank < order_.size(); ++rank) {
     if (changed_bodies[static_cast<std::size_t>(order_[rank])]) is_new_[rank] = true;

@@ -25,11 +25,11 @@ class BlockCholesky {
   /// Products of blocks that a factorisation takes; less than the bodies only where these form trees.
   [[nodiscard]] long long products() const { return products_; }
 
+  /// Factorises anew what differs from the last call: blocks of some bodies, and of pairs of two of those. The result
+  /// is the same bits as that of the whole. A column is computed anew if one of those bodies is in it or is eliminated
+  /// below it. After `set_pattern` with another pattern all bodies have changed.
   /// @param own     the diagonal's blocks, by body; their lower triangles are read
   /// @param shared  by pair, rows of b and columns of a
-  void factorise(const std::vector<Block>& own, const std::vector<Block>& shared);
-  /// Factorises again where only blocks of some bodies, and of pairs of two of those, differ from the last call's. The
-  /// result is the same bits. A column is computed anew if one of those bodies is in it or is eliminated below it.
   void factorise(const std::vector<Block>& own, const std::vector<Block>& shared,
                  const std::vector<bool>& changed_bodies);
 

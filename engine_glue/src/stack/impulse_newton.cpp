@@ -185,11 +185,7 @@ void ImpulseNewton::factorise() {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (holds_[i] == Hold::within) assemble(i);
   }
-  if (first) {
-    factor_.factorise(own_, shared_);
-  } else {
-    factor_.factorise(own_, shared_, changed_);
-  }
+  factor_.factorise(own_, shared_, changed_);
 }
 
 bool ImpulseNewton::has_changed(const std::pair<int, int>& pair) const {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 namespace pd::detail {
@@ -72,25 +73,22 @@ void RowGroups::find(const SolverBodies& bodies, const SolverRows& rows) {
     facts.joint_rows += i < rows.first_contact() ? 1 : 0;
     facts.moving_rows += i >= rows.first_contact() && is_moving(row, bodies) ? 1 : 0;
   }
-  int body = 0, row = 0;
-  for (Group& group : groups_) {
-    group.first_body = body;
-    group.first_row = row;
-    body += std::exchange(group.num_bodies, 0);
-    row += std::exchange(group.num_rows, 0);
-  }
-  bodies_.resize(static_cast<std::size_t>(body));
-  rows_.resize(static_cast<std::size_t>(row));
-  for (int i = 0; i < bodies.size(); ++i) {
-    if (group_of_[static_cast<std::size_t>(i)] < 0) continue;
-    Group& group = groups_[static_cast<std::size_t>(group_of_[static_cast<std::size_t>(i)])];
-    bodies_[static_cast<std::size_t>(group.first_body + group.num_bodies++)] = i;
-  }
-  for (int i = 0; i < rows.size(); ++i) {
-    if (group_of_row_[static_cast<std::size_t>(i)] < 0) continue;
-    Group& group = groups_[static_cast<std::size_t>(group_of_row_[static_cast<std::size_t>(i)])];
-    rows_[static_cast<std::size_t>(group.first_row + group.num_rows++)] = i;
-  }
+  const auto gather = [this](const std::vector<int>& group_of, int Group::*first, int Group::*count,
+                             std::vector<int>& members) {
+    int before = 0;
+    for (Group& group : groups_) {
+      group.*first = before;
+      before += std::exchange(group.*count, 0);
+    }
+    members.resize(static_cast<std::size_t>(before));
+    for (std::size_t i = 0; i < group_of.size(); ++i) {
+      if (group_of[i] < 0) continue;
+      Group& group = groups_[static_cast<std::size_t>(group_of[i])];
+      members[static_cast<std::size_t>(group.*first + (group.*count)++)] = static_cast<int>(i);
+    }
+  };
+  gather(group_of_, &Group::first_body, &Group::num_bodies, bodies_);
+  gather(group_of_row_, &Group::first_row, &Group::num_rows, rows_);
 }
 
 std::span<const int> RowGroups::bodies(const Group& group) const {
@@ -102,60 +100,33 @@ std::span<const int> RowGroups::rows(const Group& group) const {
   return std::span(rows_).subspan(static_cast<std::size_t>(group.first_row), static_cast<std::size_t>(group.num_rows));
 }
 
-void RowGroups::find_neighbours(const SolverRows& rows, const Group& group, int num_bodies) {
-  // Rows of one pair stand together, so that most of them are told by the row before.
-  const auto visit_pairs = [&](const auto& visit) {
-    int last_a = -1, last_b = -1;
-    for (const int i : this->rows(group)) {
-      const int a = rows[i].m_solverBodyIdA, b = rows[i].m_solverBodyIdB;
-      if (a == last_a && b == last_b) continue;
-      last_a = a;
-      last_b = b;
-      visit(static_cast<std::size_t>(a), static_cast<std::size_t>(b));
-    }
-  };
-  neighbour_start_.assign(static_cast<std::size_t>(num_bodies) + 2, 0);
-  visit_pairs([this](std::size_t a, std::size_t b) {
-    ++neighbour_start_[a + 2];
-    ++neighbour_start_[b + 2];
-  });
-  for (std::size_t i = 2; i < neighbour_start_.size(); ++i) neighbour_start_[i] += neighbour_start_[i - 1];
-  neighbours_.resize(static_cast<std::size_t>(neighbour_start_.back()));
-  visit_pairs([this](std::size_t a, std::size_t b) {
-    neighbours_[static_cast<std::size_t>(neighbour_start_[a + 1]++)] = static_cast<int>(b);
-    neighbours_[static_cast<std::size_t>(neighbour_start_[b + 1]++)] = static_cast<int>(a);
-  });
-}
-
 double RowGroups::sweeps_of_load(const SolverBodies& bodies, const SolverRows& rows, const Group& group) {
-  find_neighbours(rows, group, bodies.size());
-  const auto visit_neighbours = [this](int body, const auto& visit) {
-    const auto at = static_cast<std::size_t>(body);
-    for (int i = neighbour_start_[at]; i < neighbour_start_[at + 1]; ++i)
-      visit(neighbours_[static_cast<std::size_t>(i)]);
-  };
-  const auto moves = [this](int body) { return parent_[static_cast<std::size_t>(body)] >= 0; };
+  constexpr int kNotHeld = std::numeric_limits<int>::max();
   level_.assign(parent_.size(), -1);
-  queue_.clear();
-  for (const int body : this->bodies(group)) {
-    bool is_held = false;
-    visit_neighbours(body, [&](int other) { is_held = is_held || !moves(other); });
-    if (!is_held) continue;
-    level_[static_cast<std::size_t>(body)] = 0;
-    queue_.push_back(body);
+  for (const int body : this->bodies(group)) level_[static_cast<std::size_t>(body)] = kNotHeld;
+  // Of two neighbours none is more than one level above the other. Rows come pair by pair, mostly from the ground up or
+  // down to it, so that two turns find nearly all levels.
+  const std::span<const int> all = this->rows(group);
+  const auto end = std::lower_bound(all.begin(), all.end(), rows.first_friction()) - all.begin();
+  for (bool has_changed = true, is_back = false; has_changed; is_back = !is_back) {
+    has_changed = false;
+    for (std::ptrdiff_t k = 0; k < end; ++k) {
+      const btSolverConstraint& row = rows[all[static_cast<std::size_t>(is_back ? end - 1 - k : k)]];
+      int& a = level_[static_cast<std::size_t>(row.m_solverBodyIdA)];
+      int& b = level_[static_cast<std::size_t>(row.m_solverBodyIdB)];
+      int &lower = a < b ? a : b, &upper = a < b ? b : a;
+      if (upper - 1 <= lower) continue;
+      upper = lower + 1;
+      has_changed = true;
+    }
   }
   level_mass_.clear();
-  for (std::size_t i = 0; i < queue_.size(); ++i) {
-    const int body = queue_[i];
-    const auto level = static_cast<std::size_t>(level_[static_cast<std::size_t>(body)]);
+  for (const int body : this->bodies(group)) {
+    const int level = level_[static_cast<std::size_t>(body)];
     const double inverse_mass = static_cast<double>(bodies[body].m_originalBody->getInvMass());
-    if (level == level_mass_.size()) level_mass_.push_back(0);
-    level_mass_[level] += inverse_mass > 0 ? 1 / inverse_mass : 0;
-    visit_neighbours(body, [&](int other) {
-      if (!moves(other) || level_[static_cast<std::size_t>(other)] >= 0) return;
-      level_[static_cast<std::size_t>(other)] = static_cast<int>(level) + 1;
-      queue_.push_back(other);
-    });
+    if (level == kNotHeld) continue;
+    level_mass_.resize(std::max(level_mass_.size(), static_cast<std::size_t>(level) + 1));
+    level_mass_[static_cast<std::size_t>(level)] += inverse_mass > 0 ? 1 / inverse_mass : 0;
   }
   double load = 0, most = 0;
   for (std::size_t level = level_mass_.size(); level-- > 0;) {

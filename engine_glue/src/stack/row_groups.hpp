@@ -62,7 +62,6 @@ class RowGroups {
 
  private:
   [[nodiscard]] int root(int body);
-  void find_neighbours(const SolverRows& rows, const Group& group, int num_bodies);
 
   std::vector<Group> groups_;
   std::vector<int> parent_;    ///< of each solver body; -1: cannot move
@@ -70,10 +69,7 @@ class RowGroups {
   std::vector<int> group_of_row_;
   std::vector<int> bodies_, rows_;  ///< group by group
   // These hold the group whose load was asked for last:
-  std::vector<int> level_;            ///< of each solver body
-  std::vector<int> queue_;            ///< bodies in the order of their levels
-  std::vector<int> neighbour_start_;  ///< of each solver body in `neighbours_`, one more at the end
-  std::vector<int> neighbours_;
+  std::vector<int> level_;  ///< of each solver body; -1: cannot move
   std::vector<double> level_mass_;
 };
 
