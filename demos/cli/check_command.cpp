@@ -108,11 +108,11 @@ std::string refused_as(const CheckedMesh& checked) {
 
 std::string point_in_words(const Vec3& p) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", p.x(), p.y(), p.z()); }
 
-/// "face 12 (line 40)", from 1 as OBJ counts.
+/// "face 12 (line 40)", from 0 as refusals and answers count.
 std::string face_in_words(const CheckedMesh& checked, std::int32_t face) {
   const auto& lines = checked.mesh.faces.lines;
   const std::string line = lines.empty() ? "" : fmt::format(" (line {})", lines[static_cast<std::size_t>(face)]);
-  return fmt::format("face {}{}", face + 1, line);
+  return fmt::format("face {}{}", face, line);
 }
 
 std::string place_in_words(const CheckedMesh& checked, const MeshFinding& finding) {
@@ -139,14 +139,20 @@ void print_places(const CheckedMesh& checked, MeshFault fault) {
   if (more > 0) print_row("", fmt::format("  and {} more", more));
 }
 
+/// Words for a fault: "no: 1 edge has a hole beside it", "no: 2 edges have ...".
+struct Wrong {
+  const char* before;  ///< the count
+  const char* one;
+  const char* many;
+};
+
 /// A row of the check: what is good, or what is wrong and where.
 void print_judged(const CheckedMesh& checked, std::string_view name, MeshFault fault, const std::string& good,
-                  const std::string& wrong) {
+                  const Wrong& wrong) {
   const std::int64_t count = checked.report.count(fault);
   if (checked.report.faces == 0) return;
-  print_row(name, count == 0 ? good
-                             : fmt::format("{} {} {}", wrong.substr(0, wrong.find('#')), count,
-                                           wrong.substr(wrong.find('#') + 1)));
+  print_row(name,
+            count == 0 ? good : fmt::format("{} {} {}", wrong.before, count, count == 1 ? wrong.one : wrong.many));
   print_places(checked, fault);
 }
 
@@ -194,25 +200,31 @@ void print_report(const CheckedMesh& checked) {
   const Vec3 extent = report.high - report.low;
   print_row("size", fmt::format("{:.6g} x {:.6g} x {:.6g}, from {} to {}", extent.x(), extent.y(), extent.z(),
                                 point_in_words(report.low), point_in_words(report.high)));
-  print_judged(checked, "closed", MeshFault::open_edge, "yes: every edge has a face on both sides",
-               "no: the surface has holes;#edges have a face on one side only");
+  print_judged(
+      checked, "closed", MeshFault::open_edge, "yes: every edge has a face on both sides",
+      {"no: the surface has holes;", "edge has a face on one side only", "edges have a face on one side only"});
   print_judged(checked, "oriented", MeshFault::flipped_face, "yes: neighbouring faces show the same side",
-               "no:#edges where one neighbour shows its outside and the other its inside");
+               {"no:", "edge where one neighbour shows its outside and the other its inside",
+                "edges where one neighbour shows its outside and the other its inside"});
   print_judged(checked, "manifold", MeshFault::not_manifold, "yes: no third face meets at an edge",
-               "no:#edges or vertices where more faces meet than the two sides of a surface");
+               {"no:", "edge or vertex where more faces meet than the two sides of a surface",
+                "edges or vertices where more faces meet than the two sides of a surface"});
   print_judged(checked, "crossings", MeshFault::self_crossing,
                report.crossings_searched ? "none: faces meet only at common edges and vertices"
                                          : "none found, but the search was ended early",
-               "yes:#pairs of faces cross or touch where they are no neighbours");
+               {"yes:", "pair of faces crosses or touches where they are no neighbours",
+                "pairs of faces cross or touch where they are no neighbours"});
   print_judged(
       checked, "outside", MeshFault::inside_out,
       checked.encloses() ? "faces show their outside" : "cannot be told before the surface is closed and oriented",
-      "wrong way round:#surfaces show their inside; turn the faces");
+      {"wrong way round:", "surface shows its inside; turn the faces", "surfaces show their inside; turn the faces"});
   if (report.count(MeshFault::not_planar) > 0) {
-    print_judged(checked, "flat", MeshFault::not_planar, "", "no:#polygons whose corners lie in no plane");
+    print_judged(checked, "flat", MeshFault::not_planar, "",
+                 {"no:", "polygon whose corners lie in no plane", "polygons whose corners lie in no plane"});
   }
   if (report.count(MeshFault::degenerate_face) > 0) {
-    print_judged(checked, "slivers", MeshFault::degenerate_face, "", "yes:#faces have no area, which does no harm");
+    print_judged(checked, "slivers", MeshFault::degenerate_face, "",
+                 {"yes:", "face has no area, which does no harm", "faces have no area, which does no harm"});
   }
   if (checked.encloses()) print_row("volume", fmt::format("{:.10g}", checked.volume(report.relative_volume)));
   const auto note = query::why_hull(report, checked.hull);

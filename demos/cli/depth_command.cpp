@@ -15,6 +15,7 @@
 #include "options.hpp"
 #include "pd/depth/directional_depth.hpp"
 #include "pd/numeric/whole_file.hpp"
+#include "progress.hpp"
 #include "protocol/pair_reader.hpp"
 #include "protocol/search_file.hpp"
 #include "protocol/solid_queries.hpp"
@@ -72,12 +73,9 @@ Pose parse_pose(const std::string& text, const std::string& option) {
       for (int i = 0; i < 9; ++i) rotation(i / 3, i % 3) = n[static_cast<std::size_t>(3 + i)];
       return Pose::from_matrix(rotation, {n[0], n[1], n[2]});
     }
-    query::refuse(
-        "bad_value",
-        option +
-            ": a pose is x,y,z with no rotation, a quaternion or a matrix: 3, 7 or 12 numbers between commas, not " +
-            std::to_string(n.size()),
-        "");
+    constexpr const char* kRight =
+        "x,y,z with no rotation, a quaternion or a matrix: 3, 7 or 12 numbers between commas";
+    query::refuse("bad_value", fmt::format("{}: a pose is {}, not {}", option, kRight, n.size()), "");
   }();
   if (!pose) {
     query::refuse(to_string(pose.error().code),
@@ -107,6 +105,18 @@ DepthSettings settings_of(const DepthArguments& arguments) {
   DepthSettings settings{.method = parse_method(arguments.method)};
   if (settings.method == Method::grid || settings.method == Method::shallow) settings.delta = arguments.delta;
   return settings;
+}
+
+/// Prints one JSON object, whose members `fill` writes.
+template <class Fill>
+int print_object(const Fill& fill) {
+  std::string out;
+  query::JsonWriter writer(out);
+  writer.begin_object();
+  fill(writer);
+  writer.end_object();
+  fmt::print("{}\n", out);
+  return kDone;
 }
 
 // ---- words for people --------------------------------------------------------------------------------------------
@@ -246,9 +256,8 @@ std::pair<BodyArgument, BodyArgument> bodies_of(const DepthArguments& arguments)
     query::refuse("bad_value", "A and B: standard input holds one mesh, so only one of them may be -", "");
   }
   const query::MeshAs as = arguments.hull ? query::MeshAs::hull : query::MeshAs::found;
-  const std::vector<double>& margins = arguments.margins;
-  return {{arguments.file_a, margins.empty() ? 0 : margins.front(), as},
-          {arguments.file_b, margins.empty() ? 0 : margins.back(), as}};
+  return {{arguments.file_a, arguments.margins.empty() ? 0 : arguments.margins.front(), as},
+          {arguments.file_b, arguments.margins.empty() ? 0 : arguments.margins.back(), as}};
 }
 
 query::Pair read_pair(const DepthArguments& arguments) {
@@ -258,7 +267,7 @@ query::Pair read_pair(const DepthArguments& arguments) {
 }
 
 /// --direction: how far A must move that way.
-int run_along(const DepthArguments& arguments, const query::Pair& pair) {
+int run_along(const DepthArguments& arguments, const query::Pair& pair, Progress& progress) {
   const std::vector<double> n = parse_numbers(arguments.direction, "--direction");
   if (n.size() != 3) {
     query::refuse("bad_value", fmt::format("--direction: three numbers are expected, X,Y,Z, not {}", n.size()), "");
@@ -269,14 +278,9 @@ int run_along(const DepthArguments& arguments, const query::Pair& pair) {
   const auto result = directional_depth(pair.posed_a(), pair.posed_b(), direction, scratch);
   if (!result) query::refuse(to_string(result.error().code), "--direction: " + result.error().message, "");
   const std::int64_t nanoseconds = watch.nanoseconds();
+  progress.end();
   if (arguments.json) {
-    std::string out;
-    query::JsonWriter writer(out);
-    writer.begin_object();
-    query::write_directional_answer(*result, nanoseconds, writer);
-    writer.end_object();
-    fmt::print("{}\n", out);
-    return kDone;
+    return print_object([&](auto& writer) { query::write_directional_answer(*result, nanoseconds, writer); });
   }
   print_pair(arguments, pair, result->contact);
   print_row("depth", in_full(result->depth) + "  along the direction");
@@ -333,7 +337,7 @@ void print_solids(const DepthArguments& arguments, const SolidBody& a, const Sol
   fmt::print("\n");
 }
 
-int run_solids(const DepthArguments& arguments, const SolidBody& a, const SolidBody& b) {
+int run_solids(const DepthArguments& arguments, const SolidBody& a, const SolidBody& b, Progress& progress) {
   if (arguments.method != "auto") query::refuse("unsupported", "--method: solids are answered by auto", "");
   if (!arguments.picture.empty() || !arguments.trace.empty() || !arguments.margins.empty() ||
       !arguments.direction.empty()) {
@@ -344,24 +348,22 @@ int run_solids(const DepthArguments& arguments, const SolidBody& a, const SolidB
   const PosedSolid posed_a{&a.solid, parse_pose(arguments.pose_a, "--pose-a")};
   const PosedSolid posed_b{&b.solid, parse_pose(arguments.pose_b, "--pose-b")};
   Scratch scratch;
+  progress.begin(fmt::format("depth of {} and {} triangles", a.solid.triangles().size(), b.solid.triangles().size()));
   const query::Stopwatch watch;
   const SolidDepth result = *penetration_depth(posed_a, posed_b, scratch);
   const std::int64_t nanoseconds = watch.nanoseconds();
+  progress.end();
   if (!arguments.json) {
     const Expected<bool> seat = result.contact == ContactClass::touching ? is_seat(posed_a, posed_b) : false;
     print_solids(arguments, a, b, result, nanoseconds, seat && *seat);
     return kDone;
   }
-  std::string out;
-  query::JsonWriter writer(out);
-  writer.begin_object();
-  query::write_solid_answer(result, nanoseconds, writer);
-  if (result.contact == ContactClass::touching) query::write_seat(posed_a, posed_b, writer);
-  if (!a.convex) writer.key("a_is").string("solid");
-  if (!b.convex) writer.key("b_is").string("solid");
-  writer.end_object();
-  fmt::print("{}\n", out);
-  return kDone;
+  return print_object([&](auto& writer) {
+    query::write_solid_answer(result, nanoseconds, writer);
+    if (result.contact == ContactClass::touching) query::write_seat(posed_a, posed_b, writer);
+    if (!a.convex) writer.key("a_is").string("solid");
+    if (!b.convex) writer.key("b_is").string("solid");
+  });
 }
 
 // ---- parts -------------------------------------------------------------------------------------------------------
@@ -388,7 +390,7 @@ void print_parts(const DepthArguments& arguments, const query::BodyPair& pair, c
 }
 
 /// --parts: the groups of files as unions.
-int run_parts(const DepthArguments& arguments) {
+int run_parts(const DepthArguments& arguments, Progress& progress) {
   if (arguments.method != "auto" || !(arguments.picture + arguments.trace + arguments.direction).empty()) {
     query::refuse("unsupported", "--parts takes neither --method nor --picture, --trace and --direction", "");
   }
@@ -396,38 +398,37 @@ int run_parts(const DepthArguments& arguments) {
   const query::BodyPair pair{read_parts_argument(a), read_parts_argument(b), parse_pose(arguments.pose_a, "--pose-a"),
                              parse_pose(arguments.pose_b, "--pose-b")};
   Scratch scratch;
+  progress.begin(fmt::format("depth of unions of {} and {} convex parts", pair.a.parts.size(), pair.b.parts.size()));
   const query::Stopwatch watch;
   const auto result = penetration_depth(pair.posed_a(), pair.posed_b(), scratch, UnionSettings());
   if (!result) query::refuse(to_string(result.error().code), result.error().message, "");
   const std::int64_t nanoseconds = watch.nanoseconds();
+  progress.end();
   if (!arguments.json) {
     print_parts(arguments, pair, *result, nanoseconds);
     return kDone;
   }
-  std::string out;
-  query::JsonWriter writer(out);
-  writer.begin_object();
-  query::write_union_answer(*result, pair, nanoseconds, writer);
-  if (names_mesh(arguments.file_a)) writer.key("a_is").string("parts");
-  if (names_mesh(arguments.file_b)) writer.key("b_is").string("parts");
-  writer.end_object();
-  fmt::print("{}\n", out);
-  return kDone;
+  return print_object([&](auto& writer) {
+    query::write_union_answer(*result, pair, nanoseconds, writer);
+    if (names_mesh(arguments.file_a)) writer.key("a_is").string("parts");
+    if (names_mesh(arguments.file_b)) writer.key("b_is").string("parts");
+  });
 }
 
 int run_depth(const DepthArguments& arguments) {
   refuse_to_overwrite({arguments.file_a, arguments.file_b}, arguments.trace, "--trace");
   refuse_to_overwrite({arguments.file_a, arguments.file_b}, arguments.picture, "--picture");
-  if (arguments.parts) return run_parts(arguments);
+  Progress progress(fmt::format("reading {} and {}", arguments.file_a, arguments.file_b));
+  if (arguments.parts) return run_parts(arguments, progress);
   if (!arguments.hull && !(arguments.file_a == "-" && arguments.file_b == "-")) {
     const auto solid_a = read_solid_argument(arguments.file_a), solid_b = read_solid_argument(arguments.file_b);
     if (solid_a || solid_b) {
-      return run_solids(arguments, solid_of(solid_a, arguments.file_a), solid_of(solid_b, arguments.file_b));
+      return run_solids(arguments, solid_of(solid_a, arguments.file_a), solid_of(solid_b, arguments.file_b), progress);
     }
   }
   const query::Pair pair = read_pair(arguments);
   if (!arguments.picture.empty()) require_polytopes(pair, "--picture");
-  if (!arguments.direction.empty()) return run_along(arguments, pair);
+  if (!arguments.direction.empty()) return run_along(arguments, pair, progress);
   const DepthSettings settings = settings_of(arguments);
   if (!supports(settings.method, pair.a.shape, pair.b.shape)) {
     query::refuse("unsupported",
@@ -439,22 +440,21 @@ int run_depth(const DepthArguments& arguments) {
     require_polytopes(pair, "--trace");
     observe_searches(scratch, &recorder.emplace(pair, arguments.method));
   }
+  progress.begin("depth");
   const query::Stopwatch watch;
   const PenetrationDepth result = penetration_depth(pair.posed_a(), pair.posed_b(), scratch, settings);
   const std::int64_t nanoseconds = watch.nanoseconds();
+  progress.end();
   if (recorder) {
     recorder->add_answer(result, pair, nanoseconds);
     if (!write_trace(arguments.trace, *recorder)) return kFailed;
   }
   if (arguments.json) {
-    std::string out;
-    query::JsonWriter writer(out);
-    writer.begin_object();
-    query::write_depth_answer(result, pair.a, pair.b, nanoseconds, writer);
-    query::write_hull_note("a", pair.a, writer);
-    query::write_hull_note("b", pair.b, writer);
-    writer.end_object();
-    fmt::print("{}\n", out);
+    print_object([&](auto& writer) {
+      query::write_depth_answer(result, pair.a, pair.b, nanoseconds, writer);
+      query::write_hull_note("a", pair.a, writer);
+      query::write_hull_note("b", pair.b, writer);
+    });
   } else {
     print_result(arguments, pair, result, nanoseconds);
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -85,8 +86,11 @@ std::string about_option(const CLI::App& command, const std::string& said, std::
 std::string unconverted(const std::string& said) {
   const std::size_t name = said.find(": "), value = said.find(" = ");
   if (name == said.npos || value == said.npos) return said;
-  return fmt::format("{}: \"{}\" is no number that the option takes", said.substr(name + 2, value - name - 2),
-                     said.substr(value + 3));
+  const std::string word = said.substr(value + 3);
+  double number = 0;
+  const bool fraction = query::parse_decimal(word, number);
+  return fmt::format("{}: {}", said.substr(name + 2, value - name - 2),
+                     fraction ? word + " must be a whole number" : "\"" + word + "\" is no number");
 }
 
 std::string words_for(const CLI::App& command, const CLI::ParseError& error) {
@@ -102,6 +106,12 @@ std::string words_for(const CLI::App& command, const CLI::ParseError& error) {
   }
   if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) return unconverted(said);
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
+    int most = 0, given = 0;
+    const std::size_t limit = said.find("At Most ");
+    if (limit != said.npos &&
+        std::sscanf(said.c_str() + limit, "At Most %d required but received %d", &most, &given) == 2) {
+      return about_option(command, said, fmt::format("takes at most {} values, not {}", most, given));
+    }
     const bool none = said.find("required") != said.npos;
     return about_option(command, said, none ? "needs a value" : "takes another number of values");
   }

@@ -24,6 +24,7 @@ std::string lower_ending(const std::filesystem::path& path) {
 MeshPoints read_by_ending(const std::string& path, const std::string& ending, std::int64_t max_vertices,
                           std::uintmax_t max_bytes) {
   std::string bytes = RegularFile::open(path, max_bytes).read_all();
+  if (bytes.empty()) refuse("unreadable_file", "the file is empty", "");
   if (ending == ".gltf" || ending == ".glb") return read_gltf(path, std::move(bytes), max_vertices, max_bytes);
   if (ending == ".obj") return read_obj(bytes, max_vertices);
   if (ending == ".off") return read_off(bytes, max_vertices);
@@ -45,7 +46,7 @@ MeshPoints read_by_first_bytes(const std::string& bytes, std::int64_t max_vertic
   // An STL of bytes: 80 of any kind, the number of triangles, 50 for each.
   constexpr std::size_t kHead = 84, kTriangle = 50;
   const bool binary = text.size() >= kHead && (text.size() - kHead) % kTriangle == 0 && text.find('\0') != text.npos;
-  if (word == "solid" || binary) return read_stl(text, max_vertices);
+  if (is_word(word, "solid") || binary) return read_stl(text, max_vertices);
   return read_obj(text, max_vertices);
 }
 
@@ -67,6 +68,9 @@ bool is_mesh_name(const std::filesystem::path& path) {
 }
 
 MeshPoints read_mesh_points(const std::string& path, std::int64_t max_vertices, std::uintmax_t max_bytes) {
+  if (path == "-") {
+    refuse("unreadable_file", "-: a file is expected; `pdepth depth` alone reads a mesh from standard input", "");
+  }
   if (!is_mesh_name(path)) {
     refuse("unreadable_file", path + ": the file ending must be .obj, .off, .ply, .stl, .gltf, .glb, .xyz or .pcd", "");
   }

@@ -23,6 +23,13 @@ namespace pd::query {
   refuse("unreadable_file", "line " + std::to_string(line) + ": " + what, "");
 }
 
+/// True for a word of a format that is written in small letters, in capitals or mixed. `small` is in small letters.
+[[nodiscard]] inline bool is_word(std::string_view word, std::string_view small) {
+  return std::equal(word.begin(), word.end(), small.begin(), small.end(), [](char written, char letter) {
+    return written == letter || (written >= 'A' && written <= 'Z' && written - 'A' + 'a' == letter);
+  });
+}
+
 /// Vertices in file order, and the elements that name them. Elements may stand before the vertices that they name:
 /// whether those are there is asked at the end.
 class VertexCollector {

@@ -50,8 +50,8 @@ MeshPoints read_text(std::string_view bytes, std::int64_t max_vertices) {
   while (!cursor.at_end()) {
     std::string_view rest = cursor.next_line();
     const std::string_view keyword = next_word(rest);
-    if (keyword == "endsolid") closed = true;
-    if (keyword != "vertex") continue;
+    if (is_word(keyword, "endsolid")) closed = true;
+    if (!is_word(keyword, "vertex")) continue;
     vertices.corner(vertices.size());
     vertices.add(read_point(rest, cursor.line_number()));
     if (vertices.size() % 3 == 0) vertices.end_element(true, cursor.line_number());
@@ -69,7 +69,8 @@ MeshPoints read_stl(std::string_view bytes, std::int64_t max_vertices) {
   const bool fits_binary =
       bytes.size() >= kHeaderBytes &&
       bytes.size() == kHeaderBytes + kTriangleBytes * std::size_t{little_endian_word(bytes.data() + 80)};
-  const bool says_text = bytes.starts_with("solid") || bytes.starts_with("\xEF\xBB\xBFsolid");
+  const std::size_t mark = bytes.starts_with("\xEF\xBB\xBF") ? 3 : 0;
+  const bool says_text = is_word(bytes.substr(mark, 5), "solid");
   if (!fits_binary && says_text) return read_text(bytes, max_vertices);
   if (bytes.size() < kHeaderBytes) refuse("unreadable_file", "neither a text nor a binary STL", "");
   return read_binary(bytes, max_vertices);

@@ -215,6 +215,8 @@ TEST(JsonReader, SaysWhereAndWhy) {
     return std::to_string(reader.error_position()) + " " + std::string(reader.error());
   };
   EXPECT_EQ(words("[1,]"), "4 a value is missing");
+  EXPECT_EQ(words("[1,NaN]"), "4 NaN and Infinity are no numbers of JSON");
+  EXPECT_EQ(words("[-Infinity]"), "3 NaN and Infinity are no numbers of JSON");
   EXPECT_EQ(words("{\"a\" 1}"), "6 a colon is missing behind a key");
   EXPECT_EQ(words("[1e999]"), "2 a number is past the range of doubles");
   EXPECT_EQ(words("[1] x"), "5 the text goes on behind its value");

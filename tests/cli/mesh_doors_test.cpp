@@ -422,7 +422,12 @@ TEST_F(MeshDoors, CheckNamesFaultsAndPlaces) {
   EXPECT_EQ(open.status, 3);
   expect_words(open.out,
                {"The faces do not bound a solid", "no: the surface has holes; 4 edges have a face on one side",
-                "the edge from (1, 0, 0) to (1, 1, 0) of face 1 (line 9)"});
+                "the edge from (1, 0, 0) to (1, 1, 0) of face 0 (line 9)"});
+  // Every door counts faces alike.
+  expect_words(run("depth open.obj cube.obj").err, {"face 0 alone", "(face 0: line 9)"});
+  const std::string tip = "f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n";
+  write("turned.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n" + tip);
+  expect_words(run("check turned.obj").out, {"wrong way round: 1 surface shows its inside; turn the faces"});
   expect_words(run("check cloud.obj").out, {"points and no faces"});
   EXPECT_EQ(run("check none.obj").status, 2);
   EXPECT_EQ(run("check cube.obj --fail-on magic").status, 2);
@@ -435,7 +440,7 @@ TEST_F(MeshDoors, CheckNamesFaultsAndPlaces) {
   EXPECT_EQ(crossed.at("closed"), true);
   EXPECT_EQ(crossed.at("faults"), Json({{"self_crossing", 3}}));
   EXPECT_EQ(crossed.at("surfaces"), 2);
-  EXPECT_NE(crossed.at("findings")[0].at("where").get<std::string>().find("face 2 (line 10) and face"),
+  EXPECT_NE(crossed.at("findings")[0].at("where").get<std::string>().find("face 1 (line 10) and face"),
             std::string::npos);
 }
 

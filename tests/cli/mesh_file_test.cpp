@@ -152,6 +152,12 @@ endsolid part
 )");
   ASSERT_EQ(text.points.size(), 3u);
   EXPECT_EQ(text.points[0], kCorners[0]);
+  const query::MeshPoints capitals =
+      read("c.stl",
+           "SOLID X\nFACET NORMAL 0 0 0\nOUTER LOOP\nVERTEX 0.1 0.2 0.3\nVERTEX 1.1 0 0\nVertex 0 1.7 0\nENDLOOP\n"
+           "ENDFACET\nENDSOLID X\n");
+  EXPECT_EQ(capitals.points, text.points);
+  EXPECT_EQ(capitals.faces.size(), 1u);
   std::string binary(80, 's');
   binary.replace(0, 5, "solid");
   binary += bytes_of(std::uint32_t{1});

@@ -88,6 +88,7 @@ TEST_F(Newcomer, SweepsBodiesAndAsksAlongADirection) {
   EXPECT_EQ(json_of(pair + "--margin 0.5,0").at("depth"), 0.25);
   EXPECT_EQ(shell(pair + "--margin -1"), 2);
   EXPECT_EQ(shell(pair + "--margin 1,2,3"), 2);
+  EXPECT_TRUE(says("--margin takes at most 2 values, not 3: Radius")) << read("err");
   EXPECT_EQ(json_of("pdepth depth box:1,1,1 box:1,1,1 --direction 0,0,3 --json").at("depth"), 2.0);
   EXPECT_EQ(json_of("pdepth depth box:1,1,1 box:1,1,1 --pose-b 1,0,0 --direction=-1,0,0 --json").at("depth"), 1.0);
   EXPECT_EQ(shell("pdepth depth box:1,1,1 box:1,1,1 --direction 0,0,3"), 0);
@@ -126,6 +127,9 @@ TEST_F(Newcomer, IsToldOnATerminalWhatTheCommandWaitsFor) {
   EXPECT_TRUE(shown.ends_with("\r\x1b[K")) << "the line is taken away: " << shown;
   EXPECT_EQ(shell(slow), 0);
   EXPECT_EQ(read("err"), "") << "nothing where no terminal is";
+  const std::string asked = on_terminal("(sleep 0.7; cat cube.obj) | pdepth depth - box:1,1,1 > out");
+  EXPECT_NE(asked.find("reading - and box:1,1,1"), std::string::npos) << asked;
+  EXPECT_TRUE(asked.ends_with("\r\x1b[K")) << "the line is taken away: " << asked;
 }
 
 TEST_F(Newcomer, FindsQueriesVersionAndSchema) {
@@ -147,6 +151,7 @@ TEST_F(Newcomer, IsToldWhatIsWrongAndWhatWouldBeRight) {
   write("part.stl",
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n# not the text of an STL\n");
   write("list.json", "[[0,0],[1,0],[1,1]]\n");
+  write("empty.off", "");
   std::filesystem::create_directory(path() / "folder");
   constexpr Mistake kMistakes[] = {
       {"pdepth deph a b", R"(no subcommand "deph"; did you mean "depth"?)"},
@@ -177,6 +182,9 @@ TEST_F(Newcomer, IsToldWhatIsWrongAndWhatWouldBeRight) {
       {"pdepth audit", "RECORD is missing: The record, JSON lines"},
       {"pdepth audit r.jsonl --report", "--report needs a value: Write report.html"},
       {"pdepth query --threads many", R"(--threads: "many" is no number)"},
+      {"pdepth query --max-time 0.5", "--max-time: 0.5 must be a whole number"},
+      {"pdepth check - < cube.obj", "-: a file is expected; `pdepth depth` alone reads a mesh from standard input"},
+      {"pdepth check empty.off", "empty.off: the file is empty"},
       {"pdepth query --record-above 3 lines.jsonl", "--record-above requires --record"},
       {"pdepth depth a b --direction 1,0,0 --method grid", "--direction and --method do not go together"},
       {"pdepth polygon list.json list.json", R"(the file must be one JSON object, {"outer": [[x,y],...]})"},

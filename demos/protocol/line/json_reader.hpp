@@ -197,6 +197,7 @@ class JsonReader {
   bool number() {
     const char* const first = at_;
     if (next_is('-')) ++at_;
+    if (next_is('N') || next_is('I')) return broken("NaN and Infinity are no numbers of JSON");
     if (!next_is_digit()) return broken(at_ == first ? "a value is missing" : "a digit is missing");
     if (next_is('0')) {
       ++at_;
