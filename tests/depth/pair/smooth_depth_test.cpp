@@ -216,7 +216,8 @@ TEST(Smooth, NearContactIsAnsweredInBoundedWork) {
                        std::to_string(k) + ", step " + std::to_string(step));
           ++asked;
           most = std::max(most, d.statistics.support_calls);
-          EXPECT_LT(d.statistics.support_calls, 2000);
+          // 212 at most, and 303 of 85,000. Where rounding turned a face over unnoticed, up to 16,431.
+          EXPECT_LT(d.statistics.support_calls, 400);
           // The depth is 1-Lipschitz, and h(normal) falls by what A moved along it. L < 8 throughout.
           const double gone = move.dot(first.normal);
           const double rounding = 4e-13;

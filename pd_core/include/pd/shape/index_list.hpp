@@ -11,8 +11,8 @@
 
 namespace pd {
 
-/// How many bytes an index takes. Every index is read as four bytes and masked, without a branch. So three readable
-/// bytes must follow a list. A machine that stores the highest byte first always takes four bytes.
+/// How many bytes an index takes. Every index is read as four bytes, of which the others are dropped without a branch.
+/// So three readable bytes must follow a list.
 class IndexWidth {
  public:
   static constexpr std::size_t kReadableBehind = 3;
@@ -20,19 +20,29 @@ class IndexWidth {
   constexpr IndexWidth() = default;
   /// The least width for indices from 0 to `most`. Four bytes also hold negative ones.
   static constexpr IndexWidth up_to(std::int64_t most) {
-    if (std::endian::native != std::endian::little || most > 0xFFFF) return {};
+    if (most > 0xFFFF) return {};
     return most > 0xFF ? IndexWidth{0xFFFF, 1} : IndexWidth{0xFF, 0};
   }
 
   [[nodiscard, gnu::always_inline]] std::int32_t read(const std::byte* list, std::size_t i) const {
     std::uint32_t word = 0;
-    std::memcpy(&word, list + (i << shift_), sizeof(word));
-    return static_cast<std::int32_t>(word & mask_);
+    std::memcpy(&word, list + offset(i), sizeof(word));
+    if constexpr (std::endian::native == std::endian::little) return static_cast<std::int32_t>(word & mask_);
+    return static_cast<std::int32_t>(word >> (32 - 8 * bytes()));
   }
   void write(std::byte* list, std::size_t i, std::int32_t index) const {
-    std::memcpy(list + (i << shift_), &index, bytes());
+    std::byte* const at = list + offset(i);
+    if (shift_ == 0) {
+      *at = static_cast<std::byte>(index);
+    } else if (shift_ == 1) {
+      const auto two_bytes = static_cast<std::uint16_t>(index);
+      std::memcpy(at, &two_bytes, sizeof(two_bytes));
+    } else {
+      std::memcpy(at, &index, sizeof(index));
+    }
   }
   [[nodiscard]] std::size_t bytes() const { return std::size_t{1} << shift_; }
+  [[nodiscard, gnu::always_inline]] std::size_t offset(std::size_t i) const { return i << shift_; }
 
  private:
   constexpr IndexWidth(std::uint32_t mask, std::uint32_t shift) : mask_(mask), shift_(shift) {}
@@ -53,41 +63,41 @@ class IndexList {
     using iterator_category = std::input_iterator_tag;
 
     Iterator() = default;
-    Iterator(const std::byte* list, std::size_t i, IndexWidth width) : list_(list), i_(i), width_(width) {}
-    std::int32_t operator*() const { return width_.read(list_, i_); }
+    Iterator(const std::byte* at, IndexWidth width) : at_(at), width_(width) {}
+    std::int32_t operator*() const { return width_.read(at_, 0); }
     Iterator& operator++() {
-      ++i_;
+      at_ += width_.bytes();
       return *this;
     }
     Iterator operator++(int) {
       const Iterator before = *this;
-      ++i_;
+      ++*this;
       return before;
     }
-    bool operator==(const Iterator& other) const { return i_ == other.i_; }
+    bool operator==(const Iterator& other) const { return at_ == other.at_; }
 
    private:
-    const std::byte* list_ = nullptr;
-    std::size_t i_ = 0;
+    const std::byte* at_ = nullptr;
     IndexWidth width_;
   };
 
   /// The indices `begin` <= i < `end` of a longer list.
   IndexList(const std::byte* list, std::int32_t begin, std::int32_t end, IndexWidth width)
-      : list_(list), begin_(static_cast<std::size_t>(begin)), end_(static_cast<std::size_t>(end)), width_(width) {}
+      : first_(list + width.offset(static_cast<std::size_t>(begin))),
+        size_(static_cast<std::size_t>(end - begin)),
+        width_(width) {}
 
-  [[nodiscard]] std::size_t size() const { return end_ - begin_; }
-  [[nodiscard]] bool empty() const { return begin_ == end_; }
-  [[nodiscard]] std::int32_t operator[](std::size_t i) const { return width_.read(list_, begin_ + i); }
-  [[nodiscard]] std::int32_t front() const { return width_.read(list_, begin_); }
-  [[nodiscard]] std::int32_t back() const { return width_.read(list_, end_ - 1); }
-  [[nodiscard]] Iterator begin() const { return {list_, begin_, width_}; }
-  [[nodiscard]] Iterator end() const { return {list_, end_, width_}; }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] bool empty() const { return size_ == 0; }
+  [[nodiscard]] std::int32_t operator[](std::size_t i) const { return width_.read(first_, i); }
+  [[nodiscard]] std::int32_t front() const { return width_.read(first_, 0); }
+  [[nodiscard]] std::int32_t back() const { return width_.read(first_, size_ - 1); }
+  [[nodiscard]] Iterator begin() const { return {first_, width_}; }
+  [[nodiscard]] Iterator end() const { return {first_ + width_.offset(size_), width_}; }
 
  private:
-  const std::byte* list_;
-  std::size_t begin_;
-  std::size_t end_;
+  const std::byte* first_;
+  std::size_t size_;
   IndexWidth width_;
 };
 

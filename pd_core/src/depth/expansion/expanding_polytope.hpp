@@ -157,7 +157,7 @@ class ExpandingPolytope {
     double largest = 0;
     for (const DifferenceVertex& v : surface_.vertices) largest = std::max(largest, v.x.cwiseAbs().maxCoeff());
     const double error = lower_error();
-    double highest = goal.loss_from;
+    double highest = -std::numeric_limits<double>::infinity();
     ExpansionBudget budget(goal.vertices);
     double least = std::numeric_limits<double>::infinity();
     Vec3 least_unit = Vec3::UnitX();
@@ -172,6 +172,10 @@ class ExpandingPolytope {
       result.face = f;
       // 4.
       if (result.lower < highest - goal.max_loss && highest > goal.loss_from) return undecided(result);
+      if constexpr (kSupportsCertify<Difference>) {
+        const double fold = kFold * difference_.reach();
+        if (result.lower < highest - fold && highest > -fold) return undecided(result);
+      }
       highest = std::max(highest, result.lower);
       // An earlier upper bound may be the least, and no later support need tell.
       if constexpr (kSupportsCertify<Difference>) {
@@ -276,6 +280,10 @@ class ExpandingPolytope {
   double flat_volume() const {
     return 64 * kUnitRoundoff * difference_.reach() * difference_.reach() * difference_.reach();
   }
+
+  /// Of the reach: near contact, where no lower bound is above 0, a face that lies this much farther beyond the origin
+  /// than the one before it has been turned over by rounding. A search would go on from it for thousands of steps.
+  static constexpr double kFold = 0x1p-30;
 
   /// Larger surfaces that lost their convexity are rebuilt, which makes them smaller: measured on coherent frames.
   static constexpr int kMostFlipped = 40;

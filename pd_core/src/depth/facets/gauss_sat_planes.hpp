@@ -52,18 +52,26 @@ PD_INLINE void place_planes(Planes<Small>& out, const GaussSatBody& body, const 
   }
 }
 
+/// Lists of a body of at most 32 vertices and 64 facets: its indices take one byte each.
+PD_INLINE const std::uint8_t* single_bytes(const std::byte* list) {
+  return reinterpret_cast<const std::uint8_t*>(list);
+}
+static_assert(2 * Middle::kEdges <= 0xFF);
+
 PD_INLINE void place_planes(Planes<Middle>& out, const GaussSatBody& body, const double (&offset)[3]) {
   const ConvexPolytope::Storage& s = body.storage;
   out.used = (s.num_facets + 2 * kFloats - 1) / (2 * kFloats) * 2;
   const int end = kFloats * out.used;
   alignas(32) double x[Middle::kFacets], y[Middle::kFacets], z[Middle::kFacets];
+  const std::uint8_t* const first = single_bytes(s.facet_offsets);
+  const std::uint8_t* const corners = single_bytes(s.facet_vertices);
   for (int f = 0; f < end; ++f) {
     const int i = f < s.num_facets ? f : 0;
     const double* const n = s.facet_normals[i].data();
     out.nx[f] = n[0];
     out.ny[f] = n[1];
     out.nz[f] = n[2];
-    const std::int32_t on = s.first_corner(i);
+    const int on = corners[first[i]];
     x[f] = body.posed.x[on];
     y[f] = body.posed.y[on];
     z[f] = body.posed.z[on];
@@ -272,24 +280,26 @@ PD_INLINE bool keep_near_edges(KeptEdges<Size>& out, const GaussSatBody& body, c
   } else {
     // Half-edges lie in order round their origins: to the right of each is what is to the left of the one before.
     const ConvexPolytope::Storage& s = body.storage;
+    const std::uint8_t* const first = single_bytes(s.neighbour_offsets);
+    const std::uint8_t* const left_facets = single_bytes(s.left_facets);
     std::uint8_t kept[2 * Size::kEdges + 1];
     int both_ways = 0;
     for (int v = 0; v < s.num_vertices; ++v) {
-      const int end = s.first_half_edge(v + 1);
-      std::uint32_t right = far[s.index(s.left_facets, end - 1)];
-      for (int h = s.first_half_edge(v); h < end; ++h) {
-        const std::uint32_t left = far[s.index(s.left_facets, h)];
+      const int end = first[v + 1];
+      std::uint32_t right = far[left_facets[end - 1]];
+      for (int h = first[v]; h < end; ++h) {
+        const std::uint32_t left = far[left_facets[h]];
         kept[both_ways] = static_cast<std::uint8_t>(h);
         both_ways += static_cast<int>((left & right) == 0);
         right = left;
       }
     }
+    const std::uint8_t* const twins = single_bytes(s.twins);
+    const std::uint8_t* const targets = single_bytes(s.neighbours);
     for (int k = 0; k < both_ways; ++k) {
-      const HalfEdge e = s.half_edge(kept[k]);
-      if (e.twin < kept[k]) continue;
-      const HalfEdge back = s.half_edge(e.twin);
-      out.edge[count] = {static_cast<std::uint8_t>(e.origin), static_cast<std::uint8_t>(back.origin),
-                         static_cast<std::uint8_t>(e.facet), static_cast<std::uint8_t>(back.facet)};
+      const std::uint8_t h = kept[k], twin = twins[h];
+      if (twin < h) continue;
+      out.edge[count] = {targets[twin], targets[h], left_facets[h], left_facets[twin]};
       ++count;
     }
   }

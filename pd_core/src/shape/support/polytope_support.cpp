@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 
 #include "numeric/unit_roundoff.hpp"
@@ -23,22 +26,40 @@ int better(const ConvexPolytope& p, const Vec3& d, int v, int w) {
   return p.vertex(w).dot(d) > p.vertex(v).dot(d) ? w : v;
 }
 
-int climb(const ConvexPolytope& p, const Vec3& d, int v) {
-  double value = p.vertex(v).dot(d);
+/// @param target  (half-edge) -> the vertex that it leads to, without a sign: an address without another step.
+template <class Target>
+int climb_by(const ConvexPolytope& p, const Vec3& d, int from, const Target& target) {
+  const double *const x = p.x(), *const y = p.y(), *const z = p.z();
+  const double dx = d.x(), dy = d.y(), dz = d.z();
+  const auto height = [&](std::uint32_t v) { return x[v] * dx + y[v] * dy + z[v] * dz; };
+  auto v = static_cast<std::uint32_t>(from);
+  double value = height(v);
   for (;;) {
-    int next = v;
-    double next_value = value;
-    for (const std::int32_t w : p.neighbours(v)) {
-      const double candidate = p.vertex(w).dot(d);
-      if (candidate > next_value) {
-        next_value = candidate;
+    std::uint32_t next = v;
+    const int end = p.first_half_edge(static_cast<int>(v) + 1);
+    for (int h = p.first_half_edge(static_cast<int>(v)); h < end; ++h) {
+      const std::uint32_t w = target(static_cast<std::size_t>(h));
+      const double candidate = height(w);
+      if (candidate > value) {
+        value = candidate;
         next = w;
       }
     }
-    if (next == v) return v;
+    if (next == v) return static_cast<int>(v);
     v = next;
-    value = next_value;
   }
+}
+
+int climb(const ConvexPolytope& p, const Vec3& d, int v) {
+  const ConvexPolytope::Storage& s = p.storage();
+  if (s.width.bytes() == sizeof(std::uint16_t)) {  // most bodies that are too large for a scan
+    return climb_by(p, d, v, [targets = s.neighbours](std::size_t h) -> std::uint32_t {
+      std::uint16_t w = 0;
+      std::memcpy(&w, targets + h * sizeof(w), sizeof(w));
+      return w;
+    });
+  }
+  return climb_by(p, d, v, [&s](std::size_t h) { return static_cast<std::uint32_t>(s.width.read(s.neighbours, h)); });
 }
 
 }  // namespace
