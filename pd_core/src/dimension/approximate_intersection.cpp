@@ -18,8 +18,8 @@ using detail::SupportBody;
 
 /// The differences x_1 - x_i of points of k bodies, and behind them the bodies' own residuals; for one body x_1 -
 /// point. O lies here exactly when the bodies have a common point (the body holds the point).
-template <int D, int N>
-class Meeting final : public SupportBody<N> {
+template <int D>
+class Meeting final : public SupportBody {
  public:
   Meeting(std::span<const ComposedBody<D>> bodies, const Vector<D>& point) : bodies_(bodies), point_(point) {
     differences_ = D * std::max<Eigen::Index>(1, static_cast<Eigen::Index>(bodies.size()) - 1);
@@ -33,8 +33,8 @@ class Meeting final : public SupportBody<N> {
     magnitude_ += point.cwiseAbs().maxCoeff();
   }
 
-  [[nodiscard]] Point<N> support(const Point<N>& direction) const override {
-    Point<N> r = Point<N>::Zero(size_);
+  [[nodiscard]] Point support(const Point& direction) const override {
+    Point r = Point::Zero(size_);
     Vector<D> first_direction = Vector<D>::Zero();
     for (Eigen::Index i = 0; i < differences_; i += D) first_direction += direction.template segment<D>(i);
     const double* u = direction.data() + differences_;
@@ -57,12 +57,9 @@ class Meeting final : public SupportBody<N> {
   [[nodiscard]] bool consistent() const override { return consistent_; }
   [[nodiscard]] double magnitude() const override { return magnitude_; }
 
-  [[nodiscard]] EllipsoidBounds<N> bounds() const override {
-    if constexpr (N == D) {
-      const auto leaf = [](const ComposedBody<D>& body) { return body.node().kind == detail::ComposedKind::leaf; };
-      if (std::all_of(bodies_.begin(), bodies_.end(), leaf)) return leaf_bounds();
-    }
-    return composed_bounds();
+  [[nodiscard]] EllipsoidBounds bounds() const override {
+    const auto leaf = [](const ComposedBody<D>& body) { return body.node().kind == detail::ComposedKind::leaf; };
+    return size_ == D && std::all_of(bodies_.begin(), bodies_.end(), leaf) ? leaf_bounds() : composed_bounds();
   }
 
   [[nodiscard]] Eigen::Index size() const { return size_; }
@@ -70,14 +67,14 @@ class Meeting final : public SupportBody<N> {
 
  private:
   /// Of one or two images of preprocessed bodies, from what their nodes keep.
-  [[nodiscard]] EllipsoidBounds<D> leaf_bounds() const {
+  [[nodiscard]] EllipsoidBounds leaf_bounds() const {
     const detail::ComposedNode<D>& first = bodies_[0].node();
-    EllipsoidBounds<D> r = {first.centre - point_, first.inner, first.inner};
+    EllipsoidBounds r = {first.centre - point_, first.inner, first.inner};
     double ratio = first.body->sandwich().ratio;
     if (bodies_.size() == 2) {
       const detail::ComposedNode<D>& second = bodies_[1].node();
       r.center = first.centre - second.centre;
-      detail::add_to_root<D>(r.inner, 1, second.inner);
+      detail::add_to_root(r.inner, 1, second.inner);
       // Sums of roots are at most sqrt(2) times the root of the sum of squares.
       ratio = std::sqrt(2.0) * std::max(ratio, second.body->sandwich().ratio);
     }
@@ -85,23 +82,22 @@ class Meeting final : public SupportBody<N> {
     return r;
   }
 
-  [[nodiscard]] EllipsoidBounds<N> composed_bounds() const {
-    using Entry = Eigen::Matrix<double, N, D, Eigen::DontAlign, detail::kMaxRows<N>, D>;
+  [[nodiscard]] EllipsoidBounds composed_bounds() const {
     const double count = static_cast<double>(bodies_.size());
-    EllipsoidBounds<N> r = EllipsoidBounds<N>::zero(size_);
+    EllipsoidBounds r = EllipsoidBounds::zero(size_);
     Eigen::Index residual = differences_;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      Entry entry = Entry::Zero(size_, D);
+      detail::LiftedMatrix entry = detail::LiftedMatrix::Zero(size_, D);
       for (Eigen::Index slot = 0; slot < differences_; slot += D) {
         if (i == 0 || slot == D * static_cast<Eigen::Index>(i - 1)) {
-          entry.template middleRows<D>(slot) = (i == 0 ? 1.0 : -1.0) * Matrix<D>::Identity();
+          for (int c = 0; c < D; ++c) entry(slot + c, c) = i == 0 ? 1.0 : -1.0;
         }
       }
-      const EllipsoidBounds<N> part = bodies_[i].node().template bounds<N>(entry, residual);
+      const EllipsoidBounds part = bodies_[i].node().bounds(entry, residual);
       residual += bodies_[i].equations();
       r.center += part.center;
-      detail::add_to_root<N>(r.inner, 1, part.inner);
-      detail::add_to_root<N>(r.outer, std::sqrt(count), part.outer);
+      detail::add_to_root(r.inner, 1, part.inner);
+      detail::add_to_root(r.outer, std::sqrt(count), part.outer);
     }
     if (bodies_.size() == 1) r.center.template head<D>() -= point_;
     return r;
@@ -117,11 +113,11 @@ class Meeting final : public SupportBody<N> {
   mutable QueryCounters counters_;
 };
 
-template <int D, int N>
-Expected<IntersectionAnswer> locate(const Meeting<D, N>& meeting, double epsilon, IntersectionSearch search) {
+template <int D>
+Expected<IntersectionAnswer> locate(const Meeting<D>& meeting, double epsilon, IntersectionSearch search) {
   const bool ternary = search == IntersectionSearch::nested_ternary;
   if (ternary && !meeting.consistent()) {
-    const double fatness = detail::OriginFrame<N>(meeting).inner_radius();
+    const double fatness = detail::OriginFrame(meeting).inner_radius();
     const double allowed = detail::ternary_oracle_error(epsilon, static_cast<int>(meeting.size()), fatness);
     if (!(meeting.relative_error() <= allowed)) {
       return Error{ErrorCode::bad_value,
@@ -131,7 +127,7 @@ Expected<IntersectionAnswer> locate(const Meeting<D, N>& meeting, double epsilon
     }
   }
   const auto method = ternary ? detail::OriginMethod::nested_ternary : detail::OriginMethod::cutting_planes;
-  const detail::OriginAnswer<N> found = detail::locate_origin<N>(meeting, {epsilon, method});
+  const detail::OriginAnswer found = detail::locate_origin(meeting, {epsilon, method});
   if (!found.decided) {
     return Error{ErrorCode::out_of_range,
                  "the bodies are too far from the origin, or too slender, for this epsilon in double precision; move "
@@ -153,14 +149,13 @@ Expected<IntersectionAnswer> meet(std::span<const ComposedBody<D>> bodies, const
                    "epsilon"};
     }
   }
-  const Meeting<D, Eigen::Dynamic> lifted(bodies, point);
+  const Meeting<D> lifted(bodies, point);
   if (lifted.size() > detail::kMaxLiftedDimension) {
     return Error{ErrorCode::limit_exceeded,
                  "the bodies take " + std::to_string(lifted.size()) + " coordinates; at most " +
                      std::to_string(detail::kMaxLiftedDimension) + " are allowed",
                  ""};
   }
-  if (lifted.size() == D) return locate(Meeting<D, D>(bodies, point), epsilon, search);
   return locate(lifted, epsilon, search);
 }
 

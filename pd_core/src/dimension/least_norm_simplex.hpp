@@ -3,27 +3,26 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "dimension/support_body.hpp"
 
 namespace pd::dimension::detail {
 
 /// At most N + 1 affinely independent points with the weights of the hull's nearest point to O.
-template <int N>
 class LeastNormSimplex {
  public:
-  explicit LeastNormSimplex(const Point<N>& first)
-      : points_(first.size(), first.size() + 1), count_(1), nearest_(first) {
+  explicit LeastNormSimplex(const Point& first) : points_(first.size(), first.size() + 1), count_(1), nearest_(first) {
     points_.col(0) = first;
     weights_.resize(first.size() + 1);
     weights_(0) = 1;
   }
 
-  [[nodiscard]] const Point<N>& nearest() const { return nearest_; }
+  [[nodiscard]] const Point& nearest() const { return nearest_; }
 
   /// Adds a point and drops those that the nearest point does not need. False, and nothing said of the nearest point's
   /// progress, when the points are too close to dependent for doubles: the caller stops or goes on by other means.
-  [[nodiscard]] bool add(const Point<N>& p) {
+  [[nodiscard]] bool add(const Point& p) {
     if (count_ > nearest_.size()) return false;
     points_.col(count_) = p;
     weights_(count_) = 0;
@@ -33,7 +32,8 @@ class LeastNormSimplex {
       if (!affine_minimum(affine)) return false;
       if ((affine.array() > 0).all()) {
         weights_.head(count_) = affine;
-        nearest_ = points_.leftCols(count_) * affine;
+        nearest_ = affine(0) * points_.col(0);
+        for (int i = 1; i < count_; ++i) add_scaled(nearest_.data(), affine(i), &points_(0, i), nearest_.size());
         return true;
       }
       step_towards(affine);
@@ -41,35 +41,34 @@ class LeastNormSimplex {
   }
 
  private:
-  static constexpr int kRows = kMaxRows<N>;
-  using Weights = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kRows + 1, 1>;
-  using Edges = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kRows, kRows>;
+  using Weights = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxLiftedDimension + 1, 1>;
 
   /// Weights of the point nearest to O in the affine hull: least squares over the edges from the last point, by
-  /// Gram-Schmidt run twice a column (Eigen's decompositions take minutes to compile for five sizes).
+  /// Gram-Schmidt run twice a column.
   bool affine_minimum(Weights& weights) const {
     const int edges = count_ - 1;
     const Eigen::Index n = nearest_.size();
-    Edges q(n, edges);
-    Edges r(edges, edges);
-    Point<N> rest = -points_.col(edges);
+    LiftedMatrix q(n, edges);
+    LiftedMatrix r(edges, edges);
+    Point rest = -points_.col(edges);
     Weights along(edges + 1);
     for (int k = 0; k < edges; ++k) {
-      Point<N> column = points_.col(k) - points_.col(edges);
-      const double length = column.norm();
+      Point column(n);
+      for (Eigen::Index i = 0; i < n; ++i) column(i) = points_(i, k) - points_(i, edges);
+      const double length = std::sqrt(dot(column.data(), column.data(), n));
       for (int i = 0; i < k; ++i) r(i, k) = 0;
       for (int turn = 0; turn < 2; ++turn) {
         for (int i = 0; i < k; ++i) {
-          const double part = q.col(i).dot(column);
+          const double part = dot(&q(0, i), column.data(), n);
           r(i, k) += part;
-          column -= part * q.col(i);
+          add_scaled(column.data(), -part, &q(0, i), n);
         }
       }
-      r(k, k) = column.norm();
+      r(k, k) = std::sqrt(dot(column.data(), column.data(), n));
       if (!(r(k, k) > 1e-13 * length)) return false;
-      q.col(k) = column / r(k, k);
-      along(k) = q.col(k).dot(rest);
-      rest -= along(k) * q.col(k);
+      for (Eigen::Index i = 0; i < n; ++i) q(i, k) = column(i) / r(k, k);
+      along(k) = dot(&q(0, k), rest.data(), n);
+      add_scaled(rest.data(), -along(k), &q(0, k), n);
     }
     double sum = 0;
     for (int k = edges - 1; k >= 0; --k) {
@@ -99,10 +98,10 @@ class LeastNormSimplex {
     weights_(dropped) = weights_(count_);
   }
 
-  Eigen::Matrix<double, N, Eigen::Dynamic, 0, kRows, kRows + 1> points_;
-  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kRows + 1, 1> weights_;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxLiftedDimension, kMaxLiftedDimension + 1> points_;
+  Weights weights_;
   int count_;
-  Point<N> nearest_;
+  Point nearest_;
 };
 
 }  // namespace pd::dimension::detail

@@ -16,20 +16,18 @@ namespace pd::dimension::detail {
 
 /// An orthogonal matrix whose last column is -`unit`: w -> axes * (w_1, .., w_(N-1), 1) runs over the directions that
 /// look down along `unit`.
-template <int N>
-SquareMatrix<N> frame_along(const Point<N>& unit) {
+LiftedMatrix frame_along(const Point& unit) {
   const Eigen::Index n = unit.size();
   // A Householder reflection that maps the last axis to -unit (or, where that cancels, to unit and a change of sign).
-  Point<N> mirror = unit;
+  Point mirror = unit;
   const double sign = unit(n - 1) >= 0 ? 1 : -1;
   mirror(n - 1) += sign;
-  SquareMatrix<N> axes = SquareMatrix<N>::Identity(n, n) - (2 / mirror.squaredNorm()) * mirror * mirror.transpose();
+  LiftedMatrix axes = LiftedMatrix::Identity(n, n) - (2 / mirror.squaredNorm()) * mirror * mirror.transpose();
   axes.col(n - 1) = -unit;
   return axes;
 }
 
 /// Lemma 15 over the cube [-half_side, half_side]^(N-1); the last coordinate of every argument is 1.
-template <int N>
 struct NestedTernary {
   double half_side;  ///< a copy of [M]'s alpha
   double slope;      ///< of the function in every coordinate, at most
@@ -38,14 +36,14 @@ struct NestedTernary {
   /// @param stop  asked after every trisection: true ends the search
   template <class Function, class Stop>
   double minimise(Eigen::Index size, const Function& f, const Stop& stop) const {
-    Point<N> w = Point<N>::Ones(size);
+    Point w = Point::Ones(size);
     return minimise_from(0, size, w, f, stop);
   }
 
  private:
   /// g(x_level) of Lemma 15: the least value over the coordinates from `level` on.
   template <class Function, class Stop>
-  double minimise_from(Eigen::Index level, Eigen::Index size, Point<N>& w, const Function& f, const Stop& stop) const {
+  double minimise_from(Eigen::Index level, Eigen::Index size, Point& w, const Function& f, const Stop& stop) const {
     if (level == size - 1) return f(w);
     const double error = tolerance * std::pow(8.0, static_cast<double>(size - 2 - level));
     const auto value = [&](double x) {

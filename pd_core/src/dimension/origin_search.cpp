@@ -18,8 +18,7 @@ struct Growth {
   double separable;  ///< a length: where O is not in K_epsilon, some unit u has h'(u) + least * w'(u) <= -separable
 };
 
-template <int N>
-Growth growth_of(const SupportBody<N>& body, const OriginFrame<N>& frame, double epsilon) {
+Growth growth_of(const SupportBody& body, const OriginFrame& frame, double epsilon) {
   const double error = body.relative_error();
   const double least = error / (1 - error);
   const double used = 0.4375 * epsilon;  // 7/16: between least <= epsilon / 3 and epsilon / 2
@@ -28,22 +27,20 @@ Growth growth_of(const SupportBody<N>& body, const OriginFrame<N>& frame, double
 }
 
 /// One oracle call or two for a direction that may separate.
-template <int N>
 struct Probe {
   enum class Kind { separates, beyond, grown } kind;
-  Point<N> point;  ///< of the grown body, with <point, u> > 0; none where the direction separates
+  Point point;  ///< of the grown body, with <point, u> > 0; none where the direction separates
 };
 
 /// Asks in the unit direction u whether it separates O from K; if not, finds a point of the grown body beyond O.
-template <int N>
-Probe<N> probe(const OriginFrame<N>& frame, const Growth& growth, const Point<N>& u) {
-  using Kind = typename Probe<N>::Kind;
-  Point<N> high = frame.support(u);
+Probe probe(const OriginFrame& frame, const Growth& growth, const Point& u) {
+  using Kind = Probe::Kind;
+  Point high = frame.support(u);
   const double reach = high.dot(u);
   if (reach + 2 * growth.least + frame.rounding() < 0) return {Kind::separates, high};  // widths are at most 2
   // A point just beyond O makes slow progress: grown ones lie beyond by a part of the width.
   if (reach > growth.used * frame.inner_radius()) return {Kind::beyond, high};
-  const Point<N> low = frame.support(-u);
+  const Point low = frame.support(-u);
   const double width = (high - low).dot(u);
   if (reach + growth.least * width + frame.rounding() < 0) return {Kind::separates, high};
   return {Kind::grown, high + growth.used * (high - low)};
@@ -51,9 +48,8 @@ Probe<N> probe(const OriginFrame<N>& frame, const Growth& growth, const Point<N>
 
 /// GJK: the point of the simplex nearest to O, until the simplex holds O or a direction separates. @return false where
 /// it came to no end within its steps or doubles no longer tell its points apart.
-template <int N>
-bool descend(const OriginFrame<N>& frame, const Growth& growth, OriginAnswer<N>& answer) {
-  LeastNormSimplex<N> simplex(frame.center());
+bool descend(const OriginFrame& frame, const Growth& growth, OriginAnswer& answer) {
+  LeastNormSimplex simplex(frame.center());
   const int steps = 16 + 8 * static_cast<int>(frame.center().size());
   double norm = frame.center().norm();
   for (int step = 0; step < steps; ++step) {
@@ -61,9 +57,9 @@ bool descend(const OriginFrame<N>& frame, const Growth& growth, OriginAnswer<N>&
       answer.contains = true;
       return true;
     }
-    const Point<N> u = simplex.nearest() / -norm;
-    const Probe<N> found = probe(frame, growth, u);
-    if (found.kind == Probe<N>::Kind::separates) {
+    const Point u = simplex.nearest() / -norm;
+    const Probe found = probe(frame, growth, u);
+    if (found.kind == Probe::Kind::separates) {
       answer.contains = false;
       answer.direction = frame.to_body(u);
       return true;
@@ -79,21 +75,20 @@ bool descend(const OriginFrame<N>& frame, const Growth& growth, OriginAnswer<N>&
 /// The ellipsoid method on the directions: every probe that does not separate leaves the half of the directions u with
 /// <point, u> < 0. Where O is not in K_epsilon, a ball of directions is never cut; so once the ellipsoid is smaller
 /// than that ball, O is in K_epsilon.
-template <int N>
-void cut_directions(const OriginFrame<N>& frame, const Growth& growth, OriginAnswer<N>& answer) {
+void cut_directions(const OriginFrame& frame, const Growth& growth, OriginAnswer& answer) {
   const Eigen::Index size = frame.center().size();
   const double n = static_cast<double>(size);
   // h' + least * w' changes by at most this much a unit of u, and unit directions within `radius` of a separating one
   // separate.
   const double slope = frame.center().norm() + 1 + 2 * growth.least;
   const double radius = std::min(0.5, 0.5 * growth.separable / slope);
-  Point<N> u = Point<N>::Zero(size);
-  SquareMatrix<N> shape = SquareMatrix<N>::Identity(size, size) * 2.25;  // holds the unit ball grown by `radius`
-  double log_volume = n * std::log(1.5);                                 // of the ellipsoid over the unit ball's
-  Point<N> cut = frame.center();  // in K: separating directions have <centre, u> < 0
+  Point u = Point::Zero(size);
+  LiftedMatrix shape = LiftedMatrix::Identity(size, size) * 2.25;  // holds the unit ball grown by `radius`
+  double log_volume = n * std::log(1.5);                           // of the ellipsoid over the unit ball's
+  Point cut = frame.center();                                      // in K: separating directions have <centre, u> < 0
   double beyond = 0;
   while (log_volume > n * std::log(radius)) {
-    const Point<N> image = shape * cut;
+    const Point image = shape * cut;
     const double spread = std::sqrt(cut.dot(image));
     const double depth = beyond / spread;  // of the cut, in the ellipsoid's own unit
     if (!(depth < 1)) break;               // nothing is left
@@ -105,8 +100,8 @@ void cut_directions(const OriginFrame<N>& frame, const Growth& growth, OriginAns
     ++answer.cuts;
 
     const double length = u.norm();
-    const Probe<N> found = probe(frame, growth, Point<N>(u / length));
-    if (found.kind == Probe<N>::Kind::separates) {
+    const Probe found = probe(frame, growth, Point(u / length));
+    if (found.kind == Probe::Kind::separates) {
       answer.contains = false;
       answer.direction = frame.to_body(u / length);
       return;
@@ -119,16 +114,15 @@ void cut_directions(const OriginFrame<N>& frame, const Growth& growth, OriginAns
 
 /// Lemma 13 by Lemmas 14 and 15: the least value of h' + least * w' over v = (w, -1), w in [-alpha, alpha]^(N-1), where
 /// the last axis points to K's centre.
-template <int N>
-void minimise_envelope(const OriginFrame<N>& frame, const Growth& growth, OriginAnswer<N>& answer) {
+void minimise_envelope(const OriginFrame& frame, const Growth& growth, OriginAnswer& answer) {
   const Eigen::Index size = frame.center().size();
   const double height = frame.center().norm();
   // h(v) >= -height + inner |v|: only |v| < height / inner can separate.
   const double alpha = height / frame.inner_radius();
-  const SquareMatrix<N> axes = frame_along<N>(frame.center() / height);
-  const auto envelope = [&](const Point<N>& w) {
-    const Point<N> v = axes * w;
-    const Point<N> high = frame.support(v);
+  const LiftedMatrix axes = frame_along(frame.center() / height);
+  const auto envelope = [&](const Point& w) {
+    const Point v = axes * w;
+    const Point high = frame.support(v);
     const double reach = high.dot(v);
     const double width = growth.least == 0 ? 0.0 : (high - frame.support(-v)).dot(v);
     const double value = reach + growth.least * width;
@@ -138,9 +132,9 @@ void minimise_envelope(const OriginFrame<N>& frame, const Growth& growth, Origin
     }
     return value;
   };
-  NestedTernary<N> search{.half_side = alpha,
-                          .slope = height + 1 + 2 * growth.least,
-                          .tolerance = growth.separable / std::pow(8.0, static_cast<double>(size - 1))};
+  NestedTernary search{.half_side = alpha,
+                       .slope = height + 1 + 2 * growth.least,
+                       .tolerance = growth.separable / std::pow(8.0, static_cast<double>(size - 1))};
   answer.contains = true;
   search.minimise(size, envelope, [&] { return !answer.contains; });
 }
@@ -151,11 +145,10 @@ double ternary_oracle_error(double epsilon, int dimension, double fatness) {
   return 0.25 * epsilon * fatness * fatness * std::pow(8.0, -(dimension - 1));
 }
 
-template <int N>
-OriginAnswer<N> locate_origin(const SupportBody<N>& body, const OriginSettings& settings) {
-  const OriginFrame<N> frame(body);
+OriginAnswer locate_origin(const SupportBody& body, const OriginSettings& settings) {
+  const OriginFrame frame(body);
   const Growth growth = growth_of(body, frame, settings.epsilon);
-  OriginAnswer<N> answer;
+  OriginAnswer answer;
   const double distance = frame.center().norm();
   if (distance <= frame.inner_radius()) return answer;
   if (distance > 1 + frame.rounding()) {  // outside the outer ball
@@ -175,12 +168,5 @@ OriginAnswer<N> locate_origin(const SupportBody<N>& body, const OriginSettings& 
   answer.supports = frame.supports();
   return answer;
 }
-
-template OriginAnswer<2> locate_origin<2>(const SupportBody<2>&, const OriginSettings&);
-template OriginAnswer<3> locate_origin<3>(const SupportBody<3>&, const OriginSettings&);
-template OriginAnswer<4> locate_origin<4>(const SupportBody<4>&, const OriginSettings&);
-template OriginAnswer<5> locate_origin<5>(const SupportBody<5>&, const OriginSettings&);
-template OriginAnswer<Eigen::Dynamic> locate_origin<Eigen::Dynamic>(const SupportBody<Eigen::Dynamic>&,
-                                                                    const OriginSettings&);
 
 }  // namespace pd::dimension::detail

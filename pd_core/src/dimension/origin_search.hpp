@@ -30,19 +30,17 @@ struct OriginSettings {
 };
 
 /// What O's side is, and what it took.
-template <int N>
 struct OriginAnswer {
   bool contains = true;
   bool decided = true;        ///< false: rounding errors at these coordinates are larger than epsilon allows
-  Point<N> direction;         ///< separates O from K when !contains: h_K(direction) < 0
+  Point direction;            ///< separates O from K when !contains: h_K(direction) < 0
   std::int64_t supports = 0;  ///< calls of the oracle
   std::int64_t cuts = 0;      ///< steps of the ellipsoid method among them, 0 in nearly every case
 };
 
 /// Requires 0 < epsilon < 1 and relative_error() <= epsilon / 4 (times 8^-(N - 1) and the body's fatness for the
 /// ternary search over an oracle that is not consistent; see `ternary_oracle_error`).
-template <int N>
-[[nodiscard]] OriginAnswer<N> locate_origin(const SupportBody<N>& body, const OriginSettings& settings);
+[[nodiscard]] OriginAnswer locate_origin(const SupportBody& body, const OriginSettings& settings);
 
 /// The oracle's error at which the ternary search keeps epsilon over an oracle that is not consistent: each level of
 /// Lemma 14 loses up to 7 times the error of the one below and the length at which it stops, a factor 8 a level.

@@ -12,55 +12,48 @@
 
 namespace pd::dimension::detail {
 
-/// Largest N of a space that is only known at run time: intersections are met in a product of spaces
-/// (`lifted_body.hpp`).
+/// Largest N. It is known at run time: intersections are met in a product of spaces.
 inline constexpr int kMaxLiftedDimension = 40;
 
-template <int N>
-inline constexpr int kMaxRows = N == Eigen::Dynamic ? kMaxLiftedDimension : N;
 /// A point or direction of R^N; never on the heap.
-template <int N>
-using Point = Eigen::Matrix<double, N, 1, Eigen::DontAlign, kMaxRows<N>, 1>;
-template <int N>
-using SquareMatrix = Eigen::Matrix<double, N, N, Eigen::DontAlign, kMaxRows<N>, kMaxRows<N>>;
+using Point = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::DontAlign, kMaxLiftedDimension, 1>;
+/// A matrix of N rows and at most N columns; never on the heap.
+using LiftedMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign, kMaxLiftedDimension, kMaxLiftedDimension>;
+
+/// <a, b> of few coordinates, for which Eigen's loops over any size take long to begin. Two sums, since an addition
+/// waits for the one before.
+inline double dot(const double* a, const double* b, Eigen::Index size) {
+  double even = 0, odd = 0;
+  for (Eigen::Index k = 1; k < size; k += 2) {
+    even += a[k - 1] * b[k - 1];
+    odd += a[k] * b[k];
+  }
+  return size % 2 == 0 ? even + odd : even + odd + a[size - 1] * b[size - 1];
+}
+/// to += scale * from
+inline void add_scaled(double* to, double scale, const double* from, Eigen::Index size) {
+  for (Eigen::Index k = 0; k < size; ++k) to[k] += scale * from[k];
+}
 
 /// K between two ellipsoids: for every v, <c, v> + |inner^T v| <= h_K(v) <= <c, v> + |outer^T v|. Both roots are lower
 /// triangular. Roots, not the matrices inner inner^T: those would square the body's aspect.
-template <int N>
 struct EllipsoidBounds {
-  Point<N> center;
-  SquareMatrix<N> inner;
-  SquareMatrix<N> outer;
+  Point center;
+  LiftedMatrix inner;
+  LiftedMatrix outer;
 
   static EllipsoidBounds zero(Eigen::Index size) {
-    return {Point<N>::Zero(size), SquareMatrix<N>::Zero(size, size), SquareMatrix<N>::Zero(size, size)};
+    return {Point::Zero(size), LiftedMatrix::Zero(size, size), LiftedMatrix::Zero(size, size)};
   }
 };
 
-/// Makes root root^T + scale^2 more more^T of root root^T: the rows of [root, scale more] orthogonalised, twice each.
-template <int N, class More>
-void add_to_root(SquareMatrix<N>& root, double scale, const More& more) {
-  const Eigen::Index n = root.rows();
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMaxRows<N>, 2 * kMaxRows<N>>;
-  Rows q(n, n + more.cols());
-  q.leftCols(n) = root;
-  q.rightCols(more.cols()) = scale * more;
-  root.setZero();
-  for (Eigen::Index i = 0; i < n; ++i) {
-    for (int turn = 0; turn < 2; ++turn) {
-      for (Eigen::Index j = 0; j < i; ++j) {
-        const double part = q.row(j).dot(q.row(i));
-        root(i, j) += part;
-        q.row(i) -= part * q.row(j);
-      }
-    }
-    root(i, i) = q.row(i).norm();
-    if (root(i, i) > 0) q.row(i) /= root(i, i);
-  }
-}
+[[nodiscard]] LiftedMatrix product(const LiftedMatrix& left, const LiftedMatrix& right);
+
+/// Makes root root^T + scale^2 more more^T of root root^T.
+void add_to_root(LiftedMatrix& root, double scale, const LiftedMatrix& more);
 
 /// Supports of a convex body K of R^N, within an error relative to the directional width.
-template <int N>
 class SupportBody {
  public:
   SupportBody() = default;
@@ -69,11 +62,11 @@ class SupportBody {
   virtual ~SupportBody() = default;
 
   /// A point p of K with <p, v> >= h_K(v) - relative_error() * width_K(v), for v other than zero.
-  [[nodiscard]] virtual Point<N> support(const Point<N>& v) const = 0;
+  [[nodiscard]] virtual Point support(const Point& v) const = 0;
   [[nodiscard]] virtual double relative_error() const = 0;
   /// Whether the answers are the true extreme points of one fixed set: then the approximate support function is convex.
   [[nodiscard]] virtual bool consistent() const = 0;
-  [[nodiscard]] virtual EllipsoidBounds<N> bounds() const = 0;
+  [[nodiscard]] virtual EllipsoidBounds bounds() const = 0;
   /// Largest |coordinate| that goes into a support point: what its rounding errors are measured by.
   [[nodiscard]] virtual double magnitude() const = 0;
 };

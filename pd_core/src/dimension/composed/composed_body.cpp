@@ -76,58 +76,53 @@ double ComposedNode<D>::support(const Vector<D>& v, const double* u, Vector<D>& 
 }
 
 template <int D>
-template <int N>
-EllipsoidBounds<N> ComposedNode<D>::bounds(const Eigen::Matrix<double, N, D, Eigen::DontAlign, kMaxRows<N>, D>& entry,
-                                           Eigen::Index first_residual) const {
-  using Entry = Eigen::Matrix<double, N, D, Eigen::DontAlign, kMaxRows<N>, D>;
+EllipsoidBounds ComposedNode<D>::bounds(const LiftedMatrix& entry, Eigen::Index first_residual) const {
   const Eigen::Index size = entry.rows();
   if (kind == ComposedKind::leaf) {
     const Sandwich<D>& sandwich = body->sandwich();
-    const Matrix<D> linear = map.linear * sandwich.axes;
-    const Entry axes = entry * linear;
-    EllipsoidBounds<N> r = EllipsoidBounds<N>::zero(size);
-    r.center = entry * map.apply(sandwich.centre);
-    add_to_root<N>(r.inner, 1, axes);
+    EllipsoidBounds r = EllipsoidBounds::zero(size);
+    r.center = product(entry, Point(map.apply(sandwich.centre)));
+    add_to_root(r.inner, 1, product(entry, LiftedMatrix(map.linear * sandwich.axes)));
     r.outer = sandwich.ratio * r.inner;
     return r;
   }
   const double count = static_cast<double>(parts.size());
-  EllipsoidBounds<N> r = EllipsoidBounds<N>::zero(size);
+  EllipsoidBounds r = EllipsoidBounds::zero(size);
   if (kind == ComposedKind::hull) {
     // With c the mean of the parts' centres: h(v) - <c, v> is at least the mean of |inner_i^T v|, and at most
     // |<c_i - c, v>| + |outer_i^T v| for some i, whose square is at most 2 (<c_i - c, v>^2 + |outer_i^T v|^2).
-    std::vector<EllipsoidBounds<N>> each;
+    std::vector<EllipsoidBounds> each;
     for (const ComposedBody<D>& part : parts) {
-      each.push_back(part.node().template bounds<N>(entry, first_residual));
+      each.push_back(part.node().bounds(entry, first_residual));
       first_residual += part.node().equations;
       r.center += each.back().center / count;
     }
-    for (const EllipsoidBounds<N>& part : each) {
-      const Point<N> aside = part.center - r.center;
-      add_to_root<N>(r.inner, 1 / count, part.inner);
-      add_to_root<N>(r.outer, std::sqrt(2.0), part.outer);
-      add_to_root<N>(r.outer, std::sqrt(2.0), aside);
+    for (const EllipsoidBounds& part : each) {
+      const Point aside = part.center - r.center;
+      add_to_root(r.inner, 1 / count, part.inner);
+      add_to_root(r.outer, std::sqrt(2.0), part.outer);
+      add_to_root(r.outer, std::sqrt(2.0), aside);
     }
     return r;
   }
   Eigen::Index slot =
       first_residual + (kind == ComposedKind::intersection ? D * static_cast<Eigen::Index>(parts.size() - 1) : 0);
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    Entry part_entry = entry;
+    LiftedMatrix part_entry = entry;
     if (kind == ComposedKind::intersection) {
       if (i > 0) part_entry.setZero();
       for (std::size_t k = 1; k < parts.size(); ++k) {
         if (i != 0 && i != k) continue;
-        part_entry.template middleRows<D>(first_residual + D * static_cast<Eigen::Index>(k - 1)) +=
-            (i == 0 ? 1.0 : -1.0) * Matrix<D>::Identity();
+        const Eigen::Index row = first_residual + D * static_cast<Eigen::Index>(k - 1);
+        for (int c = 0; c < D; ++c) part_entry(row + c, c) += i == 0 ? 1.0 : -1.0;
       }
     }
-    const EllipsoidBounds<N> part = parts[i].node().template bounds<N>(part_entry, slot);
+    const EllipsoidBounds part = parts[i].node().bounds(part_entry, slot);
     slot += parts[i].node().equations;
     r.center += part.center;
     // Sums of roots are at least the root of the sum of squares, and at most sqrt(count) times that.
-    add_to_root<N>(r.inner, 1, part.inner);
-    add_to_root<N>(r.outer, std::sqrt(count), part.outer);
+    add_to_root(r.inner, 1, part.inner);
+    add_to_root(r.outer, std::sqrt(count), part.outer);
   }
   return r;
 }
@@ -157,7 +152,9 @@ Expected<ComposedBody<D>> ComposedBody<D>::of(DirectionalWidth<D> body, const Af
   node->epsilon = body.backend() == Backend::exact ? 0 : body.epsilon();
   node->consistent = body.backend() != Backend::macbeath;
   node->centre = map.apply(sandwich.centre);
-  detail::add_to_root<D>(node->inner, 1, axes);
+  detail::LiftedMatrix inner = detail::LiftedMatrix::Zero(D, D);
+  detail::add_to_root(inner, 1, axes);
+  node->inner = inner;
   node->body = std::move(body);
   node->map = map;
   return ComposedBody(std::move(node));
@@ -218,15 +215,9 @@ SupportPoint<D> ComposedBody<D>::support(const Vector<D>& direction, QueryCounte
   return r;
 }
 
-#define PD_INSTANTIATE(D)                                                                                             \
-  template class ComposedBody<D>;                                                                                     \
-  namespace detail {                                                                                                  \
-  template struct ComposedNode<D>;                                                                                    \
-  template EllipsoidBounds<D> ComposedNode<D>::bounds<D>(const Eigen::Matrix<double, D, D, Eigen::DontAlign, D, D>&,  \
-                                                         Eigen::Index) const;                                         \
-  template EllipsoidBounds<Eigen::Dynamic> ComposedNode<D>::bounds<Eigen::Dynamic>(                                   \
-      const Eigen::Matrix<double, Eigen::Dynamic, D, Eigen::DontAlign, kMaxLiftedDimension, D>&, Eigen::Index) const; \
-  }
+#define PD_INSTANTIATE(D)         \
+  template class ComposedBody<D>; \
+  template struct detail::ComposedNode<D>;
 PD_INSTANTIATE(2)
 PD_INSTANTIATE(3)
 PD_INSTANTIATE(4)

@@ -25,7 +25,7 @@ struct ComposedNode {
   AffineMap<D> map;                         ///< of a leaf
   Vector<D> centre = Vector<D>::Zero();     ///< of a leaf: that of its sandwich, mapped
   /// Of a leaf: the lower triangular root of its inner ellipsoid, mapped; the outer one is the sandwich's ratio larger.
-  SquareMatrix<D> inner = SquareMatrix<D>::Zero();
+  Matrix<D> inner = Matrix<D>::Zero();
   std::vector<ComposedBody<D>> parts;  ///< of the others
   int equations = 0;
   double epsilon = 0;
@@ -41,9 +41,7 @@ struct ComposedNode {
 
   /// The ellipsoids of the image under (value, residuals) -> entry * value + residuals at the coordinates from
   /// `first_residual` on.
-  template <int N>
-  [[nodiscard]] EllipsoidBounds<N> bounds(const Eigen::Matrix<double, N, D, Eigen::DontAlign, kMaxRows<N>, D>& entry,
-                                          Eigen::Index first_residual) const;
+  [[nodiscard]] EllipsoidBounds bounds(const LiftedMatrix& entry, Eigen::Index first_residual) const;
 };
 
 }  // namespace pd::dimension::detail

@@ -41,10 +41,9 @@ template <int D>
 class GrowingSum {
  public:
   explicit GrowingSum(const ComposedBody<D>& sum) : sum_(sum), hull_(0.5) {
-    const EllipsoidBounds<D> bounds = sum.node().template bounds<D>(Matrix<D>::Identity(), 0);
-    frame_.linear = inverse_of<D>(bounds.inner);
-    frame_.translation = -(frame_.linear * bounds.center);
-    ratio_ = (frame_.linear * bounds.outer).norm();
+    const EllipsoidBounds bounds = sum.node().bounds(Matrix<D>::Identity(), 0);
+    frame_ = Sandwich<D>{bounds.center, bounds.inner}.fattening();
+    ratio_ = (frame_.linear * Matrix<D>(bounds.outer)).norm();
   }
 
   /// How far K reaches in the frame, in which it holds the unit ball.
