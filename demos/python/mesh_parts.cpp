@@ -37,19 +37,25 @@ query::MeshPoints read_arrays(const py::tuple& pair) {
   return mesh;
 }
 
-query::MeshPoints read_source(py::handle mesh, const std::string& path) {
-  if (py::isinstance<py::tuple>(mesh)) return read_arrays(mesh.cast<py::tuple>());
-  const query::Limits limits;
-  return query::read_mesh_points(path, limits.max_vertices, query::kMaxMeshBytes);
-}
-
-Compound decomposed(query::MeshPoints mesh, const std::string& name, const query::SolidWish& wish,
-                    DecompositionSettings& settings) {
+Compound decomposed_mesh(query::MeshPoints mesh, const std::string& name, const query::SolidWish& wish,
+                         DecompositionSettings& settings) {
   const auto solid = query::body_of_mesh(std::move(mesh), name, wish).solid;
   if (!solid) query::refuse("bad_faces", "the mesh has points and no faces, so that it bounds no solid", "");
+  return decomposed(*solid, settings);
+}
+
+}  // namespace
+
+query::MeshPoints read_mesh(py::handle mesh) {
+  if (py::isinstance<py::tuple>(mesh)) return read_arrays(mesh.cast<py::tuple>());
+  const query::Limits limits;
+  return query::read_mesh_points(mesh.cast<std::string>(), limits.max_vertices, query::kMaxMeshBytes);
+}
+
+Compound decomposed(const MeshSolid& solid, DecompositionSettings& settings) {
   Interrupts interrupts;
   settings.watch = [&](const auto&) { interrupts.hear(); };
-  auto found = decompose(*solid, settings);
+  auto found = decompose(solid, settings);
   if (!found) query::refuse(to_string(found.error().code), found.error().message, "");
   if (!found->error_reached) {
     query::refuse("limit_exceeded",
@@ -60,8 +66,6 @@ Compound decomposed(query::MeshPoints mesh, const std::string& name, const query
   settings.error = found->error;
   return std::move(found->parts);
 }
-
-}  // namespace
 
 py::tuple mesh_parts(py::handle mesh, py::handle error, const std::string& side, bool turn_faces) {
   DecompositionSettings settings;
@@ -75,7 +79,7 @@ py::tuple mesh_parts(py::handle mesh, py::handle error, const std::string& side,
   }
   const std::string name = py::isinstance<py::tuple>(mesh) ? "mesh" : mesh.cast<std::string>();
   try {
-    query::MeshPoints source = read_source(mesh, name);
+    query::MeshPoints source = read_mesh(mesh);
     const query::SolidWish wish{.always = !error.is_none(),
                                 .turn_faces = turn_faces,
                                 .hull_words = "ConvexPolytope.from_mesh(..., hull=True)",
@@ -83,7 +87,7 @@ py::tuple mesh_parts(py::handle mesh, py::handle error, const std::string& side,
     Compound parts = [&] {
       const py::gil_scoped_release unlocked;
       return error.is_none() ? query::parts_of_mesh(source, name, wish).compound
-                             : decomposed(std::move(source), name, wish, settings);
+                             : decomposed_mesh(std::move(source), name, wish, settings);
     }();
     py::list arrays;
     for (const Compound::Part& part : parts.parts()) {

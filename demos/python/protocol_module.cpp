@@ -52,17 +52,17 @@ std::vector<std::string> answer_many(const std::vector<std::string>& lines, int 
 }
 
 /// Points [n, 3], the file's own numbers of them, and with `check` what keeps the mesh from being convex (or "").
-py::tuple mesh_points(const std::string& path, bool check) {
-  const query::Limits limits;
+/// @param source  as `read_mesh` takes it
+py::tuple mesh_points(py::handle source, bool check) {
   try {
-    const query::MeshPoints mesh = query::read_mesh_points(path, limits.max_vertices, query::kMaxMeshBytes);
+    const query::MeshPoints mesh = read_mesh(source);
     Array points({static_cast<py::ssize_t>(mesh.points.size()), py::ssize_t{3}});
     for (std::size_t i = 0; i < mesh.points.size(); ++i) {
       for (int k = 0; k < 3; ++k) points.mutable_at(static_cast<py::ssize_t>(i), k) = mesh.points[i][k];
     }
     return py::make_tuple(points, mesh.ids, check ? query::not_convex_because(mesh) : "");
   } catch (const query::Refusal& refusal) {
-    refuse(refusal.code, refusal.message, path);
+    refuse(refusal.code, refusal.message, py::isinstance<py::tuple>(source) ? "mesh" : source.cast<std::string>());
   }
 }
 
@@ -94,27 +94,42 @@ query::MeshPoints scaled_mesh(const std::string& path, py::handle scale) {
   return mesh;
 }
 
-/// The solid of a closed mesh as vertices of convex parts, one part where the mesh is convex. The parts cover the
-/// solid and reach at most about `tolerance` beyond it; they are the solid exactly where doubles hold their corners.
+/// Convex parts that cover a solid and reach at most about `tolerance` beyond it. They are the solid exactly where
+/// doubles hold their corners and these parts are few; else the tolerance is the certified error of a decomposition.
+Compound covering_parts(const MeshSolid& solid, double tolerance) {
+  auto cut = SolidParts::from_solid(solid, {.tolerance = tolerance});
+  if (cut) return cut->outer();
+  if (cut.error().code != ErrorCode::limit_exceeded) {
+    query::refuse(to_string(cut.error().code), cut.error().message, "");
+  }
+  if (tolerance == 0) {
+    query::refuse("limit_exceeded",
+                  cut.error().message +
+                      "; tolerance=LENGTH allows parts that reach so far beyond it, and meshes=\"hull\" "
+                      "takes the convex hull",
+                  "");
+  }
+  DecompositionSettings settings;
+  settings.error = tolerance;
+  return decomposed(solid, settings);
+}
+
+/// The solid of a closed mesh as vertices of convex parts, one part where the mesh is convex.
 py::list solid_parts(const std::string& path, py::handle scale, double tolerance) {
   py::list parts;
   try {
     query::MeshPoints mesh = scaled_mesh(path, scale);
-    std::optional<SolidParts> solid;
+    std::optional<Compound> cover;
     query::MeshBody body;
     {
       const py::gil_scoped_release unlocked;
       body = query::body_of_mesh(std::move(mesh), path, {.hull_words = "meshes=\"hull\"", .parts_words = ""});
-      if (body.solid) {
-        auto cut = SolidParts::from_solid(*body.solid, {.tolerance = tolerance});
-        if (!cut) query::refuse(to_string(cut.error().code), cut.error().message, "");
-        solid = std::move(cut).value();
-      }
+      if (body.solid) cover = covering_parts(*body.solid, tolerance);
     }
-    if (!solid) {
+    if (!cover) {
       parts.append(vertices_of(*body.hull->shape.polytope()));
     } else {
-      for (const Compound::Part& part : solid->outer().parts()) parts.append(vertices_of(*part.shape.polytope()));
+      for (const Compound::Part& part : cover->parts()) parts.append(vertices_of(*part.shape.polytope()));
     }
   } catch (const query::Refusal& refusal) {
     refuse(refusal.code, refusal.message, path);

@@ -254,6 +254,7 @@ ODD = f'<robot name="r"><link name="a">{shape("<box size=&quot;1 1 1&quot;/>")}<
 
 NO_ROBOTS = [
     (ARM.replace('"0.6 0.6 0.2"', '"0.6 0.6"'), "bad_value", "arm.urdf line 3: size of <box> must be 3 numbers"),
+    (ARM.replace('"0.6 0.6 0.2"', '"0.6, 0.6, 0.2"'), "bad_value", "must be numbers with blanks between them"),
     (ARM.replace('"0.6 0.6 0.2"', '"0.6 0 0.2"'), "bad_value", "the sizes of <box> must be positive"),
     (ARM.replace('"0.6 0.6 0.2"', '"0.6 1e305 0.2"'), "out_of_range", "arm.urdf line 3: <geometry>: half_extents[1]: "),
     (ARM.replace('"0.6 0.6 0.2"', '"0.6 nan 0.2"'), "non_finite", "must be finite"),
@@ -266,6 +267,8 @@ NO_ROBOTS = [
     (ARM.replace('"0 0 2"', '"0 0 0"'), "zero_direction", "axis of joint 'yaw'"),
     (ARM.replace('parent link="column"', 'parent link="pillar"'), "bad_value", "the link 'pillar', which is not there"),
     (ARM.replace('<link name="wrist"/>', '<link name="wrist"/><link name="wrist"/>'), "bad_value", "second link 'wrist'"),
+    (ODD + '<link name="b"/>' + joint("x", "revolute", "a", "b", '<limit lower="2" upper="-2"/>') + "</robot>", "bad_value",
+     "lower limit 2 of joint 'x' is greater than the upper one, -2"),
     (ARM.replace('mimic joint="slide"', 'mimic joint="grip"'), "bad_value", "mimics itself"),
     (ARM.replace('mimic joint="slide"', 'mimic joint="roll"'), "bad_value", "mimics 'roll', which is fixed"),
     (ARM.replace('mimic joint="slide"', 'mimic joint="nod"'), "bad_value", "mimics 'nod', which is not there"),
@@ -352,6 +355,20 @@ def corner(faces=8):
     return "\n".join(lines + ["f " + " ".join(map(str, loop)) for loop in loops[:faces]]) + "\n"
 
 
+def torus(around, tube):
+    """A ring about the z axis, of radius 1, whose tube has the radius 0.3."""
+    lines, number = [], lambda i, j: i % around * tube + j % tube + 1
+    for i in range(around):
+        for j in range(tube):
+            u, v = 2 * np.pi * i / around, 2 * np.pi * j / tube
+            lines.append(f"v {(1 + 0.3 * np.cos(v)) * np.cos(u)} {(1 + 0.3 * np.cos(v)) * np.sin(u)} {0.3 * np.sin(v)}")
+    for i in range(around):
+        for j in range(tube):
+            corners = number(i, j), number(i + 1, j), number(i + 1, j + 1), number(i, j + 1)
+            lines += [f"f {corners[0]} {corners[1]} {corners[2]}", f"f {corners[0]} {corners[2]} {corners[3]}"]
+    return "\n".join(lines) + "\n"
+
+
 def test_a_mesh_that_is_not_convex_stays_a_solid(read, tmp_path):
     text = f"""<robot name="r"><link name="a">{shape('<mesh filename="L.obj" scale="1 -0.5 1"/>')}</link><link name="m"/>
       <link name="b">{shape('<sphere radius="0.1"/>')}</link>{joint("x", "prismatic", "a", "m")}
@@ -364,6 +381,13 @@ def test_a_mesh_that_is_not_convex_stays_a_solid(read, tmp_path):
     assert hull.signed_distance[0, 0] < 0 and read(text, meshes="hull").shape("a").is_convex
     coarse = read(text, tolerance=2.0)  # one part, which covers the solid
     assert coarse.shape("a").is_convex and coarse.distances(q, pairs=pair).signed_distance[0, 0] < 0
+    (tmp_path / "L.obj").write_text(torus(32, 16))
+    with pytest.raises(pdepth.Refused, match="tolerance=LENGTH") as caught:  # the exact parts are too many
+        read(text)
+    assert caught.value.code == "limit_exceeded"
+    ring = read(text, tolerance=0.06)
+    above = ring.distances([[0.0, 0.0], [1.0, 0.0]], pairs=pair).signed_distance[:, 0]
+    assert 0.14 <= above[0] <= 0.25 and -0.52 <= above[1] <= -0.38  # the hole of the ellipse stays open; the tube is met
     (tmp_path / "L.obj").write_text(corner(7))
     with pytest.raises(pdepth.Refused, match="has a hole there") as caught:
         read(text)

@@ -51,7 +51,16 @@ def test_polytopes_from_faces_halfspaces_and_meshes(tmp_path):
     assert np.array_equal(pdepth.ConvexPolytope.from_halfspaces(planes).vertices, CUBE)
     triangles = np.array([f[:3] for f in faces] + [[f[0], f[2], f[3]] for f in faces])
     mesh = SimpleNamespace(vertices=np.vstack([CUBE, [[9, 9, 9]]]), faces=triangles)
-    assert np.array_equal(pdepth.ConvexPolytope.from_mesh(mesh).vertices, CUBE)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert np.array_equal(pdepth.ConvexPolytope.from_mesh(mesh).vertices, CUBE)
+    mesh.faces = triangles[1:]  # of an object, too, the hull is told
+    with pytest.warns(UserWarning, match="mesh: the mesh has holes, so that the shape is its convex hull") as told:
+        assert np.array_equal(pdepth.ConvexPolytope.from_mesh(mesh).vertices, CUBE)
+    assert told[0].filename == __file__
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        pdepth.ConvexPolytope.from_mesh(mesh, hull=True)
     file = tmp_path / "cube.obj"
     lines = [f"v {x} {y} {z}" for x, y, z in CUBE] + ["f " + " ".join(str(i + 1) for i in f) for f in faces]
     file.write_text("\n".join(lines) + "\n")
@@ -141,6 +150,14 @@ BAD = [
     (lambda: pdepth.Pose(wxyz=[1, 0, 0, 0], xyzw=[0, 0, 0, 1]), "Pose", "bad_value", "one of"),
     (lambda: pdepth.Pose(pdepth.Pose(translation=[1, 2, 3]).matrix.T), "matrix", "bad_value", "transposed"),
     (lambda: pdepth.Pose(rotation=2 * np.eye(3)), "rotation", "not_a_rotation", ""),
+    (lambda: pdepth.ConvexPolytope.from_faces(CUBE, [[0, 1, 3], [4, 6.5, 7]]), "faces[1]", "bad_faces", "not 6.5"),
+    (lambda: pdepth.ConvexPolytope.from_faces(CUBE, [[0, "1", 3]]), "faces[0]", "bad_faces", "not '1'"),
+    (lambda: pdepth.ConvexPolytope.from_faces(CUBE, [[0, True, 3]]), "faces[0]", "bad_faces", "not True"),
+    (lambda: pdepth.ConvexPolytope.from_faces(CUBE, [[0, np.nan, 3]]), "faces[0]", "bad_faces", "not nan"),
+    (lambda: pdepth.ConvexPolytope.from_faces(CUBE, None), "faces", "bad_value", "a list of faces"),
+    (lambda: pdepth.Sheet(CUBE, [[0, 1, 2.7]]), "faces[0]", "bad_faces", "not 2.7"),
+    (lambda: pdepth.StarBody(CUBE, [[0, 1, 2.7]], [0, 0, 0]), "faces[0]", "bad_faces", "not 2.7"),
+    (lambda: pdepth.Compound.from_mesh(SimpleNamespace(vertices=CUBE, faces=[[0, 1, 2.7]])), "mesh.faces[0]", "bad_faces", ""),
 ]
 
 
@@ -150,6 +167,25 @@ def test_bad_input_says_which_argument_and_what_would_be_right(make, where, code
         make()
     assert (caught.value.where, caught.value.code) == (where, code)
     assert hint in str(caught.value)
+
+
+def test_the_numbers_of_a_shape_cannot_be_set():
+    for shape, name in ((pdepth.Sphere(1), "radius"), (pdepth.Box([1, 1, 1], margin=0.5), "margin"),
+                        (pdepth.ConvexPolytope(CUBE), "points"), (pdepth.Compound([pdepth.Sphere(1)]), "parts"),
+                        (pdepth.Sheet(CUBE, [[0, 1, 2]]), "faces")):
+        before = repr(shape)
+        with pytest.raises(AttributeError):
+            setattr(shape, name, 2.0)
+        shape.label = "a name of the caller's"
+        assert repr(shape) == before and shape.label
+
+
+def test_faces_of_whole_numbers_in_any_form():
+    faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]
+    signs = np.linalg.det(CUBE[[1, 2, 4]] - CUBE[0])
+    faces = faces if signs > 0 else [face[::-1] for face in faces]
+    for form in (faces, np.array(faces), np.array(faces, dtype=float), np.array(faces, dtype=np.uint8), [tuple(f) for f in faces]):
+        assert len(pdepth.ConvexPolytope.from_faces(CUBE[[0, 1, 2, 4]], form).facets) == 4
 
 
 def test_strided_and_narrow_arrays_mean_the_same_numbers():

@@ -105,6 +105,8 @@ def query_many(name, rows, *, threads=None):
 
 
 def _row_line(name, row):
+    if not isinstance(row, dict):
+        raise refused(f"rows: each must be a dictionary of the query's fields, not {type(row).__name__} (bad_value)")
     line = {"query": name, **{key: _field(key, value) for key, value in row.items() if value is not None}}
     try:
         return json.dumps(line, allow_nan=False)

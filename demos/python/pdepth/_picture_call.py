@@ -6,6 +6,8 @@ import json
 import os
 import tempfile
 
+import numpy as np
+
 from ._errors import refused
 from ._shapes import pose_fields, shape_fields
 
@@ -38,8 +40,14 @@ def picture(a, b=None, pose_a=None, pose_b=None, *, size=(960, 540), azimuth=-58
 
 
 def save_picture(path, rgb):
-    """Writes a picture as a PNG."""
-    _compiled().write_png(rgb, os.fspath(path))
+    """Writes a picture as a PNG: rgb is [height, width, 3] uint8, and the file's name ends in .png."""
+    shape, dtype = getattr(rgb, "shape", ()), getattr(rgb, "dtype", None)
+    if len(shape) != 3 or shape[2] != 3 or dtype != np.uint8:
+        raise refused(f"rgb: has shape {shape} and dtype {dtype}, needs [height, width, 3] uint8 (bad_value)")
+    path = os.fspath(path)
+    if not path.lower().endswith(".png"):
+        raise refused(f"path: {path!r}: pictures are written as PNG: name it *.png (bad_value)")
+    _compiled().write_png(rgb, path)
 
 
 def png(rgb):

@@ -184,19 +184,23 @@ def depth(a, b, pose_a=None, pose_b=None, *, method="auto", delta=None, bracket=
 
     Raises Refused, a ValueError, for bad input; a bad pose in a batch is a row's error.
     """
+    if threads is not None or axis != 0:
+        _threads(threads)
+        if not isinstance(axis, int) or (axis not in (0, -1) and not _is_batch(a, b, pose_a, pose_b)):
+            raise refused(f"axis: must be a leading dimension of the poses, not {axis!r} (out_of_range)")
     if warm is None and delta is None and method == "auto" and bracket == "tightest" and beyond is None:
         found = _core.ask_plain(a, b, pose_a, pose_b)
         if found is not None:
             return found
     settings = _settings(method, delta, bracket, beyond)
     if not _is_batch(a, b, pose_a, pose_b):
-        if warm is True:
-            raise refused("warm: one pair takes a pdepth.Warm; True is for a batch (bad_value)")
+        if not (warm is None or warm is False or isinstance(warm, _core.Warm)):
+            raise refused(f"warm: one pair takes a pdepth.Warm, not {warm!r}; True is for a batch (bad_value)")
         return _core.ask(a, b, pose_a, pose_b, settings, warm or None)
     (bodies_a, bodies_b, poses_a, poses_b), lead, count = _rows(a, b, pose_a, pose_b)
     if warm not in (None, True, False):
         raise refused("warm: True or False for a batch (bad_value)")
-    if not isinstance(axis, int) or not -len(lead) <= axis < len(lead):
+    if not -len(lead) <= axis < len(lead):
         raise refused(f"axis: {axis!r} is none of the {len(lead)} leading dimensions (out_of_range)")
     axis %= len(lead)
     starts, order = COLD, None

@@ -72,6 +72,8 @@ def _joint(node):
     limit = node.first("limit")
     if kind in ("revolute", "prismatic") and limit is not None:
         joint.limits = (limit.numbers("lower", 1, (0,)).item(), limit.numbers("upper", 1, (0,)).item())
+        if joint.limits[0] > joint.limits[1]:
+            limit.refuse(f"the lower limit {joint.limits[0]:g} of joint {name!r} is greater than the upper one, {joint.limits[1]:g}")
     mimic = node.first("mimic")
     if mimic is not None:
         factor, offset = mimic.numbers("multiplier", 1, (1,)).item(), mimic.numbers("offset", 1, (0,)).item()

@@ -65,7 +65,7 @@ class Node:
         try:
             values = np.array([float(word) for word in text.split()])
         except ValueError:
-            self.refuse(f"{name} must be numbers, not {text[:60]!r}")
+            self.refuse(f"{name} must be numbers with blanks between them, not {text[:60]!r}")
         if len(values) != count:
             self.refuse(f"{name} must be {count} number{'s' * (count > 1)}, not {text[:60]!r}")
         if not np.isfinite(values).all():
@@ -108,7 +108,7 @@ def read_xml(path, root_tag):
     try:
         parser.Parse(text, True)
     except expat.ExpatError as error:
-        raise refused(f"{name} line {error.lineno}: no XML, {expat.ErrorString(error.code)} (unreadable_file)") from None
+        raise refused(f"{name} line {error.lineno}: no XML: {expat.ErrorString(error.code)} (unreadable_file)") from None
     root = top.children[0]
     if root.tag != root_tag:
         root.refuse(f"must be a <{root_tag}>, not a <{root.tag}>")

@@ -31,6 +31,29 @@ def _numbers(value):
     return np.asarray(value, dtype=float).tolist()
 
 
+def _loops(faces, argument="faces"):
+    """Faces as lists of row numbers, which are whole and no words."""
+    if isinstance(faces, np.ndarray) and faces.ndim == 2 and faces.dtype.kind in "iu":
+        return faces.tolist()
+    try:
+        loops = [list(face) for face in faces]
+    except TypeError:
+        raise refused(f"{argument}: must be a list of faces, each a list of row numbers of vertices (bad_value)") from None
+    for i, loop in enumerate(loops):
+        for each in loop:
+            whole = isinstance(each, (int, np.integer)) or isinstance(each, (float, np.floating)) and float(each).is_integer()
+            if not whole or isinstance(each, bool):
+                raise refused(f"{argument}[{i}]: row numbers of vertices are integers from 0, not {each!r} (bad_faces)")
+    return [[int(each) for each in loop] for loop in loops]
+
+
+def _keep(shape, name, value):
+    """Sets an attribute that is not one of the numbers that the shape is made of."""
+    if name in shape.__dict__.get("_arguments", ()):
+        raise AttributeError(f"{type(shape).__name__} is immutable: make another one with the new {name}")
+    object.__setattr__(shape, name, value)
+
+
 def _axis(axis):
     if axis not in _AXES:
         raise refused(f"axis: must be 'x', 'y' or 'z', not {axis!r} (bad_value)")
@@ -91,6 +114,9 @@ class Shape(_core.Shape):
         fields = {"type": self._type, **{key: value for key, value in self._arguments.items()}}
         return fields
 
+    def __setattr__(self, name, value):
+        _keep(self, name, value)
+
     def __repr__(self):
         inner = ", ".join(f"{name}={value!r}" for name, value in self._arguments.items())
         return f"{type(self).__name__}({inner})"
@@ -128,10 +154,14 @@ class Sheet(_core.Sheet):
     """
 
     def __init__(self, vertices, faces, *, margin=0.0):
+        faces = _loops(faces)
         super().__init__(vertices, faces, margin)
-        self._arguments = {"vertices": _numbers(vertices), "faces": [[int(i) for i in face] for face in faces]}
+        self._arguments = {"vertices": _numbers(vertices), "faces": faces}
         if margin:
             self._arguments["margin"] = float(margin)
+
+    def __setattr__(self, name, value):
+        _keep(self, name, value)
 
     def __repr__(self):
         return f"Sheet({', '.join(f'{name}={value!r}' for name, value in self._arguments.items())})"
@@ -175,8 +205,9 @@ class ConvexPolytope(Shape):
 
         Raises Refused: 'bad_faces', 'not_closed', 'not_convex' or 'not_full_dimensional' at faces[i].
         """
+        faces = _loops(faces)
         _core.Shape("faces", (vertices, faces), margin)
-        used = sorted({int(i) for face in faces for i in face})
+        used = sorted({i for face in faces for i in face})
         rows = np.asarray(vertices, dtype=float)
         if len(used) < len(rows):
             raise refused(f"vertices[{min(set(range(len(rows))) - set(used))}]: no face uses it (bad_faces)")
@@ -194,19 +225,20 @@ class ConvexPolytope(Shape):
     def from_mesh(cls, mesh, *, margin=0.0, hull=False):
         """The hull of a mesh: a file (OBJ, STL, PLY, OFF, glTF, XYZ, PCD) or an object with `.vertices` and `.faces` (trimesh's).
 
-        A file whose mesh is not convex gives a UserWarning, unless hull=True says that its hull is meant.
+        A mesh that is not convex gives a UserWarning, unless hull=True says that its hull is meant.
         Vertices that no face refers to are left out. Feature ids are rows of the points that are kept.
         Raises Refused: 'unreadable_file' with the line or byte at fault.
         """
-        if isinstance(mesh, (str, os.PathLike)):
-            from . import _protocol
+        from . import _protocol
 
-            points, _, reason = _protocol.mesh_points(os.fspath(mesh), not hull)
+        def warn_of(reason, name):
             if reason:
-                warnings.warn(
-                    f"{os.fspath(mesh)}: {reason}, so that the shape is its convex hull; hull=True says that this is meant",
-                    stacklevel=2,
-                )
+                told = f"{name}: {reason}, so that the shape is its convex hull; hull=True says that this is meant"
+                warnings.warn(told, stacklevel=3)
+
+        if isinstance(mesh, (str, os.PathLike)):
+            points, _, reason = _protocol.mesh_points(os.fspath(mesh), not hull)
+            warn_of(reason, os.fspath(mesh))
             return cls(points, margin=margin)
         if not hasattr(mesh, "vertices"):
             raise refused(f"mesh: a path, or an object with .vertices and .faces, not {type(mesh).__name__} (bad_value)")
@@ -219,7 +251,10 @@ class ConvexPolytope(Shape):
             if outside.any():
                 row = int(np.argmax(outside))
                 raise refused(f"mesh.faces[{row}]: vertices are numbered 0 to {len(points) - 1} (out_of_range)")
-            points = points[np.unique(faces)]
+            used, rows = np.unique(faces, return_inverse=True)
+            points = points[used]
+            if not hull:
+                warn_of(_protocol.mesh_points((points, rows.reshape(faces.shape).tolist()), True)[2], "mesh")
         return cls(points, margin=margin)
 
 
@@ -338,7 +373,7 @@ class Compound(Shape):
         if isinstance(mesh, (str, os.PathLike)):
             source = os.fspath(mesh)
         elif hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
-            source = (mesh.vertices, [[int(v) for v in face] for face in mesh.faces])
+            source = (mesh.vertices, _loops(mesh.faces, "mesh.faces"))
         else:
             raise refused(f"mesh: a path, or an object with .vertices and .faces, not {type(mesh).__name__} (bad_value)")
         parts, reached = _protocol.mesh_parts(source, error, side, bool(turn_faces))
@@ -366,5 +401,6 @@ class StarBody(Shape):
     _type = "star"
 
     def __init__(self, vertices, faces, center, *, margin=0.0):
+        faces = _loops(faces)
         super().__init__("star", (vertices, faces, center), margin, {"vertices": vertices, "center": center})
-        self._arguments["faces"] = [[int(i) for i in face] for face in faces]
+        self._arguments["faces"] = faces

@@ -99,7 +99,7 @@ class _Pairs:
         self.count = len(self.pairs)
         self.poses = poses
         if not callable(poses):
-            if len(poses) != 2:
+            if not hasattr(poses, "__len__") or len(poses) != 2:
                 raise refused("poses: (poses_a, poses_b), each [n, 4, 4], or a function of (begin, end) (bad_value)")
             for name, column in zip(("poses[0]", "poses[1]"), poses):
                 if np.shape(column) != (self.count, 4, 4):
