@@ -269,6 +269,7 @@ NO_ROBOTS = [
     (ARM.replace('<link name="wrist"/>', '<link name="wrist"/><link name="wrist"/>'), "bad_value", "second link 'wrist'"),
     (ODD + '<link name="b"/>' + joint("x", "revolute", "a", "b", '<limit lower="2" upper="-2"/>') + "</robot>", "bad_value",
      "lower limit 2 of joint 'x' is greater than the upper one, -2"),
+    (ODD + '<link name="b"/></robot>', "bad_value", "no joint holds link 'b', and 'a' is a root already"),
     (ARM.replace('mimic joint="slide"', 'mimic joint="grip"'), "bad_value", "mimics itself"),
     (ARM.replace('mimic joint="slide"', 'mimic joint="roll"'), "bad_value", "mimics 'roll', which is fixed"),
     (ARM.replace('mimic joint="slide"', 'mimic joint="nod"'), "bad_value", "mimics 'nod', which is not there"),

@@ -56,8 +56,8 @@ class Robot:
         meshes: for all links one of these words, or {link: word} with "solid" for the links that are not named. The word
         "solid" cuts closed meshes that are not convex into convex parts. The word "hull" takes convex hulls. The word
         "parts" takes the hull of each connected part, for files that hold a convex decomposition.
-        tolerance: how far, about, the parts of a "solid" may reach beyond the solid, in metres; a tolerance gives fewer
-        parts.
+        tolerance: how far, about, the parts of a "solid" may reach beyond the solid, in metres. A tolerance gives fewer
+        parts; curved meshes, which have too many exact ones, need it, and their parts take seconds to find.
 
         Raises Refused with file and line: 'unreadable_file', 'missing_field' (a package without a root, too), 'bad_value',
         'non_finite', 'unsupported', and what a mesh's reader says.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ._errors import refused
 from ._robot_model import COORDINATES, WITH_AXIS, Joint, Link, Model
 from ._robot_xml import matrix_of, read_xml
 from ._shapes import Box, Capsule, Cylinder, Ellipsoid, Sphere
@@ -24,7 +25,18 @@ def read_urdf(path, meshes):
         into.parts.append((shape, _origin(part)))
     if not links:
         root.refuse("has no <link>", "missing_field")
-    return Model(root.attributes.get("name", ""), list(links.values()), [_joint(node) for node in root.all("joint")])
+    model = Model(root.attributes.get("name", ""), list(links.values()), [_joint(node) for node in root.all("joint")])
+    _require_one_root(model)
+    return model
+
+
+def _require_one_root(model):
+    """A link that no joint holds would stand at the root's place. Joints of links that are not there are told later."""
+    links, held = {link.name: link for link in model.links}, {joint.child for joint in model.joints}
+    roots = [link for link in links.values() if link.name not in held]
+    if len(roots) > 1 and held <= links.keys():
+        told = f"no joint holds link {roots[1].name!r}, and {roots[0].name!r} is a root already; a robot has one root"
+        raise refused(f"{roots[1].where}: {told} (bad_value)")
 
 
 def _origin(node):
