@@ -34,6 +34,14 @@ struct SolverCounters {
       nanoseconds, exact_signs, wider, covered, skipped_triangles, deep_unions, deep_unions_nearly, deep_unions_left;
 };
 
+/// What a room above works with in a call, made there when it is first needed.
+struct WorkingMemory {
+  WorkingMemory() = default;
+  virtual ~WorkingMemory() = default;
+  WorkingMemory(const WorkingMemory&) = delete;
+  WorkingMemory& operator=(const WorkingMemory&) = delete;
+};
+
 struct ThreadBuffers {
   Scratch scratch;
   ManifoldScratch manifold;
@@ -46,6 +54,7 @@ struct ThreadBuffers {
   unsigned queries = 0;  ///< for sampling the clock
   /// The shapes of the last pair without a memory of its own: a hull on a mesh meets one triangle after another.
   std::array<std::shared_ptr<CachedShape>, 2> recent;
+  std::unique_ptr<WorkingMemory> unions;  ///< of `UnionAlgorithm`
 };
 
 /// Counts contacts that were dropped or changed for what lies around them; most often there are none.

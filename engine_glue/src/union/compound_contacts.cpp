@@ -135,7 +135,8 @@ bool all_convex(const std::vector<Child>& children) {
 
 class CompoundContacts final : public UnionContacts {
  public:
-  bool find(const UnionQuestion& question, SolverCore& core, PairMemory& memory, Patches& patches) override;
+  bool find(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory,
+            Patches& patches) override;
   void replace(const UnionQuestion& question, Patches& patches, PatchManifolds& manifolds) override {
     ChildrenOfPoint around(question.result, question.a, children_a_, question.b, children_b_, pairs_);
     manifolds.replace(patches, question.time, question.result, around);
@@ -179,7 +180,8 @@ void CompoundContacts::move(const std::vector<Child>& children, std::uint64_t st
   }
 }
 
-bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, PairMemory& memory, Patches& patches) {
+bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory,
+                            Patches& patches) {
   const auto& [a, b, seconds, threshold, stamp, result] = question;
   pairs_.clear();
   memories_.begin();
@@ -197,12 +199,11 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Pai
   // Most pairs of boxes that overlap end here.
   if (children_b_.empty()) children_a_.clear();
   if (!all_convex(children_a_) || !all_convex(children_b_)) return false;
-  auto buffers = core.buffers.lease();
-  buffers->near.begin_pair(stamp);
-  move(children_a_, stamp, core, *buffers, memory.children[0]);
-  move(children_b_, stamp, core, *buffers, memory.children[1]);
-  look_at(a, children_a_, buffers->near.facts(), core.cache);
-  look_at(b, children_b_, buffers->near.facts(), core.cache);
+  buffers.near.begin_pair(stamp);
+  move(children_a_, stamp, core, buffers, memory.children[0]);
+  move(children_b_, stamp, core, buffers, memory.children[1]);
+  look_at(a, children_a_, buffers.near.facts(), core.cache);
+  look_at(b, children_b_, buffers.near.facts(), core.cache);
   const StepReach step_reach(result, threshold, static_cast<btScalar>(seconds));
   for (std::size_t i = 0; i < children_a_.size(); ++i) {
     const Child& child_a = children_a_[i];
@@ -226,7 +227,7 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Pai
       if (remembered.shapes[0] != motion_a.shape) remembered.shapes[0] = motion_a.shape;
       if (remembered.shapes[1] != motion_b.shape) remembered.shapes[1] = motion_b.shape;
       const ChildrenInResult pair(result, a, child_a, b, child_b);
-      if (!ask(pair, question, core, way, static_cast<double>(gap), step_reach, remembered, *buffers, patches)) {
+      if (!ask(pair, question, core, way, static_cast<double>(gap), step_reach, remembered, buffers, patches)) {
         return false;
       }
     }
@@ -234,7 +235,7 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Pai
   memories_.end(memory.pieces);
   const double speed = (linear_velocity(*b.getCollisionObject()) - linear_velocity(*a.getCollisionObject())).norm();
   if (deep_.needed_in_step(static_cast<double>(question.time.seconds) * speed, pairs_.size())) {
-    leave_as_one(question, core, memory, *buffers, patches);
+    leave_as_one(question, core, memory, buffers, patches);
   } else {
     memory.union_pause = memory.union_refusals = 0;
     memory.union_way.setZero();

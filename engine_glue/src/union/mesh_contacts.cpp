@@ -87,7 +87,8 @@ constexpr double kFlat = sizeof(btScalar) == sizeof(float) ? 0x1p-22 : 0x1p-50;
 
 class MeshContacts final : public UnionContacts {
  public:
-  bool find(const UnionQuestion& question, SolverCore& core, PairMemory& memory, Patches& patches) override;
+  bool find(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory,
+            Patches& patches) override;
   void replace(const UnionQuestion& question, Patches& patches, PatchManifolds& manifolds) override {
     PiecesOfPoint around(question, children_, triangles_);
     manifolds.replace(patches, question.time, question.result, around);
@@ -223,30 +224,30 @@ void MeshContacts::add_fronts(const btCollisionObjectWrapper& a, const UnionQues
   }
 }
 
-bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, PairMemory& memory, Patches& patches) {
+bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory,
+                        Patches& patches) {
   triangles_.clear();
   places_.clear();
   memories_.begin();
   if (!is_finite(question.a.getWorldTransform()) || !is_finite(question.b.getWorldTransform())) return true;
   if (!all_children(question.a, *question.b.getCollisionShape(), children_)) return false;
-  auto buffers = core.buffers.lease();
-  buffers->near.begin_pair(question.stamp);
-  look_at(question.a, children_, buffers->near.facts(), core.cache);
+  buffers.near.begin_pair(question.stamp);
+  look_at(question.a, children_, buffers.near.facts(), core.cache);
   if (children_.empty()) return true;
   reach_out(question);
   sides_.begin(memory.sheet);
-  still_ = stand_still(question, core, *buffers, memory);
-  if (together_) read_mesh(question, lower_, upper_, *buffers);
+  still_ = stand_still(question, core, buffers, memory);
+  if (together_) read_mesh(question, lower_, upper_, buffers);
   if (still_) {
-    memory.standing.find(buffers->around.triangles(), known_);
+    memory.standing.find(buffers.around.triangles(), known_);
   } else if (!stand_.empty() && may_come_to_rest(question)) {
     memory.standing.begin(stand_, question.threshold, question.b.getCollisionShape()->getMargin(),
-                          buffers->around.triangles());
+                          buffers.around.triangles());
   } else {
     memory.standing.forget();
   }
   for (std::size_t i = 0; i < children_.size(); ++i) {
-    if (find_of(question, static_cast<int>(i), core, *buffers, memory, patches)) continue;
+    if (find_of(question, static_cast<int>(i), core, buffers, memory, patches)) continue;
     memory.standing.forget();
     return false;
   }

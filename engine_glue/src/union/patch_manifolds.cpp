@@ -81,12 +81,12 @@ void PatchManifolds::append_to(btManifoldArray& manifolds) const {
   for (const auto& kept : manifolds_) manifolds.push_back(kept->manifold);
 }
 
-std::span<const LastPatch> PatchManifolds::last_patches(std::array<int, kMost>& of) {
+std::span<const LastPatch> PatchManifolds::last_patches(std::array<int, kMost>& of, LastPatches& patches) const {
   std::size_t count = 0;
   for (std::size_t m = 0; m < manifolds_.size(); ++m) {
     const btPersistentManifold& manifold = *manifolds_[m]->manifold;
     if (manifold.getNumContacts() == 0) continue;
-    LastPatch& last = last_[count];
+    LastPatch& last = patches[count];
     last.normal.setZero();
     last.count = manifold.getNumContacts();
     const btTransform& pose_b = manifold.getBody1()->getWorldTransform();
@@ -98,7 +98,7 @@ std::span<const LastPatch> PatchManifolds::last_patches(std::array<int, kMost>& 
     last.normal.normalize();
     of[count++] = static_cast<int>(m);
   }
-  return {last_.data(), count};
+  return {patches.data(), count};
 }
 
 void PatchManifolds::replace(Patches& patches, const StepTime& seconds, btManifoldResult& result,
@@ -111,7 +111,8 @@ void PatchManifolds::replace(Patches& patches, const StepTime& seconds, btManifo
   const btCollisionObject& a = *first.getBody0();
   const btCollisionObject& b = *first.getBody1();
   std::array<int, kMost> of{};
-  patches.choose(kMost, static_cast<double>(first.getContactBreakingThreshold()), last_patches(of));
+  LastPatches last;
+  patches.choose(kMost, static_cast<double>(first.getContactBreakingThreshold()), last_patches(of, last));
   std::array<int, kMost> heirs{};
   heirs.fill(-1);
   for (int i = 0; i < patches.size(); ++i) {

@@ -48,14 +48,14 @@ class PatchManifolds final : public ManifoldOwner {
     btPersistentManifold* manifold = nullptr;
     PairMemory memory;
   };
+  using LastPatches = std::array<LastPatch, kMost>;
   /// What the manifolds hold from the last step, where the bodies are now; `of` gets the manifolds' numbers.
-  std::span<const LastPatch> last_patches(std::array<int, kMost>& of);
+  std::span<const LastPatch> last_patches(std::array<int, kMost>& of, LastPatches& patches) const;
   Kept& at(std::size_t i, const btCollisionObject& a, const btCollisionObject& b);
 
   SolverCore& core_;
   btDispatcher& dispatcher_;
   std::vector<std::unique_ptr<Kept>> manifolds_;
-  std::array<LastPatch, kMost> last_;
 };
 
 }  // namespace pd::detail

@@ -43,7 +43,8 @@ class ChildOfPoint : public PointSurroundings {
 
 class PlaneContacts final : public UnionContacts {
  public:
-  bool find(const UnionQuestion& question, SolverCore& core, PairMemory& memory, Patches& patches) override;
+  bool find(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory,
+            Patches& patches) override;
   void replace(const UnionQuestion& question, Patches& patches, PatchManifolds& manifolds) override {
     ChildOfPoint around(question, children_);
     manifolds.replace(patches, question.time, question.result, around);
@@ -53,7 +54,8 @@ class PlaneContacts final : public UnionContacts {
   std::vector<Child> children_;
 };
 
-bool PlaneContacts::find(const UnionQuestion& question, SolverCore& core, PairMemory& memory, Patches& patches) {
+bool PlaneContacts::find(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory,
+                         Patches& patches) {
   const btCollisionObjectWrapper& compound = question.a;
   const btCollisionObjectWrapper& plane = question.b;
   children_.clear();
@@ -61,9 +63,8 @@ bool PlaneContacts::find(const UnionQuestion& question, SolverCore& core, PairMe
   if (!all_children(compound, *plane.getCollisionShape(), children_)) return false;
   const Halfspace3 ground = ground_of(plane);
   const auto threshold = static_cast<double>(question.threshold);
-  auto buffers = core.buffers.lease();
-  buffers->near.begin_pair(question.stamp);
-  look_at(question.a, children_, buffers->near.facts(), core.cache);
+  buffers.near.begin_pair(question.stamp);
+  look_at(question.a, children_, buffers.near.facts(), core.cache);
   for (std::size_t i = 0; i < children_.size(); ++i) {
     const Child& child = children_[i];
     const auto& shape = static_cast<const btConvexShape&>(*child.shape);
@@ -77,14 +78,14 @@ bool PlaneContacts::find(const UnionQuestion& question, SolverCore& core, PairMe
                                .shape = known,
                                .threshold = threshold,
                                .sharp_box = true};
-    const SolverCore::Outcome outcome = core.stand_on(asked, *buffers, found);
+    const SolverCore::Outcome outcome = core.stand_on(asked, buffers, found);
     if (outcome == SolverCore::Outcome::unsupported) return false;
     if (outcome != SolverCore::Outcome::answered || found.manifold.count == 0) continue;
     const ChildInResult piece(question.result, compound, child);
     if (is_piece(piece.wrapper())) {
       const PosedShape posed{(known->sharp ? known->sharp : known->body).get(), to_pd(child.pose)};
-      AskedPieces pieces = question.of_pieces(piece.wrapper(), plane, core, *buffers);
-      count_covered(drop_covered(pieces.as(posed, posed), found.manifold), *buffers);
+      AskedPieces pieces = question.of_pieces(piece.wrapper(), plane, core, buffers);
+      count_covered(drop_covered(pieces.as(posed, posed), found.manifold), buffers);
     }
     patches.add(found.manifold, static_cast<int>(i), child.index, -1);
   }

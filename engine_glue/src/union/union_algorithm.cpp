@@ -2,7 +2,9 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "pair/bullets_stand_in.hpp"
 #include "pair/solver_core.hpp"
@@ -11,59 +13,96 @@
 
 namespace pd::detail {
 
+namespace {
+
+using MakeContacts = std::unique_ptr<UnionContacts> (*)();
+
+/// A search of one kind of union, and what it found.
+struct UnionSearch {
+  explicit UnionSearch(MakeContacts make) : kind(make), contacts(make()) {}
+
+  MakeContacts kind;
+  std::unique_ptr<UnionContacts> contacts;
+  Patches patches;
+};
+
+/// The searches of a thread, one for each kind of union.
+class ThreadSearches final : public WorkingMemory {
+ public:
+  static UnionSearch& of(ThreadBuffers& buffers, MakeContacts kind) {
+    if (!buffers.unions) buffers.unions = std::make_unique<ThreadSearches>();
+    auto& all = static_cast<ThreadSearches&>(*buffers.unions).searches_;
+    const auto found = std::find_if(all.begin(), all.end(), [&](const auto& search) { return search->kind == kind; });
+    if (found != all.end()) return **found;
+    return *all.emplace_back(std::make_unique<UnionSearch>(kind));
+  }
+
+ private:
+  std::vector<std::unique_ptr<UnionSearch>> searches_;
+};
+
+/// What the first of a step's trials found, for those after it.
+struct FoundInTrial {
+  explicit FoundInTrial(MakeContacts kind) : search(kind) {}
+
+  UnionSearch search;
+  std::uint64_t trials = 0;  ///< `SolverCore::trials`
+  btScalar threshold = 0;
+  btTransform pose_a, pose_b;
+  UnionPairMemory memory;  ///< as it was left
+};
+
+}  // namespace
+
 /// What lives between steps.
 struct UnionAlgorithm::State {
-  State(const SolverInWorld& of, const btCollisionAlgorithmConstructionInfo& info, const Kind& kind)
-      : world(of),
-        swapped(kind.swapped),
-        contacts(kind.contacts()),
-        manifolds(of.core(), *info.m_dispatcher1),
-        bullets(of, *info.m_dispatcher1) {}
+  State(const SolverInWorld& of, const btCollisionAlgorithmConstructionInfo& info, const Kind& k)
+      : world(of), kind(k), manifolds(of.core(), *info.m_dispatcher1), bullets(of, *info.m_dispatcher1) {}
 
   const SolverInWorld& world;
-  bool swapped;
-  std::unique_ptr<UnionContacts> contacts;
+  Kind kind;
   PatchManifolds manifolds;
-  Patches patches;
   BulletsStandIn bullets;
   FlatMemory flat[2];  ///< of the question's a and b
   bool used = false;
 
-  /// Fills `patches`. Trials that begin at one state take what the first one found: it is the longest, so that no point
-  /// is missing. @return false: Bullet's own algorithm has to answer
-  bool find(const UnionQuestion& question);
+  /// Finds the pair's patches. Trials that begin at one state take what the first one found: it is the longest, so that
+  /// no point is missing. @return null: Bullet's own algorithm has to answer
+  UnionSearch* find(const UnionQuestion& question, ThreadBuffers& buffers);
 
  private:
-  /// Keeps what was found last.
-  struct Found {
-    std::uint64_t trials = 0;  ///< `SolverCore::trials`
-    btScalar threshold = 0;
-    btTransform pose_a, pose_b;
-    UnionPairMemory memory;  ///< as it was left
-  } found_;
+  std::unique_ptr<FoundInTrial> found_;  ///< in worlds that are stepped in trials
 };
 
-bool UnionAlgorithm::State::find(const UnionQuestion& question) {
+UnionSearch* UnionAlgorithm::State::find(const UnionQuestion& question, ThreadBuffers& buffers) {
   SolverCore& core = world.core();
   const std::uint64_t trials = core.trials();
+  UnionPairMemory& memory = manifolds.memory();
+  if (trials == 0) {
+    if (found_) found_->trials = 0;
+    UnionSearch& search = ThreadSearches::of(buffers, kind.contacts);
+    search.patches.clear();
+    const bool found = search.contacts->find(question, core, buffers, manifolds.memory(), search.patches);
+    return found ? &search : nullptr;
+  }
   const btTransform& pose_a = question.a.getWorldTransform();
   const btTransform& pose_b = question.b.getWorldTransform();
-  UnionPairMemory& memory = manifolds.memory();
-  if (trials != 0 && trials == found_.trials && question.threshold == found_.threshold && pose_a == found_.pose_a &&
-      pose_b == found_.pose_b) {
-    memory = found_.memory;
-    return true;
+  if (!found_) found_ = std::make_unique<FoundInTrial>(kind.contacts);
+  if (trials == found_->trials && question.threshold == found_->threshold && pose_a == found_->pose_a &&
+      pose_b == found_->pose_b) {
+    memory = found_->memory;
+    return &found_->search;
   }
-  patches.clear();
-  found_.trials = 0;
-  if (!contacts->find(question, core, manifolds.memory(), patches)) return false;
-  if (trials == 0) return true;
-  found_.trials = trials;
-  found_.threshold = question.threshold;
-  found_.pose_a = pose_a;
-  found_.pose_b = pose_b;
-  found_.memory = memory;
-  return true;
+  UnionSearch& search = found_->search;
+  search.patches.clear();
+  found_->trials = 0;
+  if (!search.contacts->find(question, core, buffers, manifolds.memory(), search.patches)) return nullptr;
+  found_->trials = trials;
+  found_->threshold = question.threshold;
+  found_->pose_a = pose_a;
+  found_->pose_b = pose_b;
+  found_->memory = memory;
+  return &search;
 }
 
 bool UnionAlgorithm::Kind::takes(const SolverInWorld& world, const btCollisionObjectWrapper& a,
@@ -86,8 +125,8 @@ void UnionAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) {
 void UnionAlgorithm::processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
                                       const btDispatcherInfo& info, btManifoldResult* result) {
   State& s = *state_;
-  const btCollisionObjectWrapper& one = s.swapped ? *b : *a;
-  const btCollisionObjectWrapper& other = s.swapped ? *a : *b;
+  const btCollisionObjectWrapper& one = s.kind.swapped ? *b : *a;
+  const btCollisionObjectWrapper& other = s.kind.swapped ? *a : *b;
   btPersistentManifold& first = s.manifolds.first(*one.getCollisionObject(), *other.getCollisionObject());
   result->setPersistentManifold(&first);
   if (!s.world.core().closed()) {
@@ -99,9 +138,10 @@ void UnionAlgorithm::processCollision(const btCollisionObjectWrapper* a, const b
     const FlatWrapper flat_one(one, core.flat_compounds, stamp, s.flat[0]);
     const FlatWrapper flat_other(other, core.flat_compounds, stamp, s.flat[1]);
     const UnionQuestion question{flat_one.wrapper(), flat_other.wrapper(), time_of(info), threshold, stamp, *result};
-    if (s.find(question)) {
+    auto buffers = core.buffers.lease();
+    if (UnionSearch* search = s.find(question, *buffers)) {
       s.bullets.release();
-      s.contacts->replace(question, s.patches, s.manifolds);
+      search->contacts->replace(question, search->patches, s.manifolds);
       return;
     }
   }

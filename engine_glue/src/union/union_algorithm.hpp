@@ -36,8 +36,10 @@ struct UnionQuestion {
   }
 };
 
-/// The contacts of a pair's pieces, of one kind of union: triangles (mesh_contacts.hpp) or children
-/// (compound_contacts.hpp). Lives as long as the pair.
+/// The search for the contacts of a pair's pieces, of one kind of union: triangles (mesh_contacts.hpp) or children
+/// (compound_contacts.hpp). It holds nothing but what it works with, so that one search serves all pairs of a thread:
+/// a search of each pair's own is 10 KB, and a thousand of them push each other out of the cache. What a pair remembers
+/// from step to step is in its `PairMemory`.
 class UnionContacts {
  public:
   UnionContacts() = default;
@@ -47,8 +49,10 @@ class UnionContacts {
 
   /// Adds the points of all pieces to `patches`, each piece's under the rule of covered_contact.hpp.
   /// @return false where a piece is not convex or has no exact form: Bullet's own algorithm answers for the pair then
-  virtual bool find(const UnionQuestion& question, SolverCore& core, PairMemory& memory, Patches& patches) = 0;
-  /// Hands the patches to the manifolds, with the pieces found last as surroundings of their points.
+  virtual bool find(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory,
+                    Patches& patches) = 0;
+  /// Hands the patches to the manifolds, with the pieces found last as surroundings of their points. Requires: `find`
+  /// filled them.
   virtual void replace(const UnionQuestion& question, Patches& patches, PatchManifolds& manifolds) = 0;
 };
 
