@@ -138,5 +138,52 @@ TEST(ThinBody, StaysWhereTheHostPutsIt) {
   EXPECT_LT(height_of(*body), -0.5);
 }
 
+/// The deepest contact that pushes a capsule down, which falls into a valley between two slopes of a mesh.
+double deepest_push_down(unsigned start) {
+  std::mt19937 random(start);
+  std::uniform_real_distribution<double> share(-1, 1);
+  BulletPenetrationDepthSolver solver;
+  btTriangleMesh triangles;
+  BulletWorld world;
+  install(world.world(), solver);
+  const auto on_slopes = [](double x, double z) { return at(x, x > 0 ? 0.29 * x : 0.175 * x, z); };
+  for (const double x : {-8.0, 0.0}) {
+    triangles.addTriangle(on_slopes(x, -4), on_slopes(x, 4), on_slopes(x + 8, 4));
+    triangles.addTriangle(on_slopes(x, -4), on_slopes(x + 8, 4), on_slopes(x + 8, -4));
+  }
+  btCollisionShape* const valley = world.shape<btBvhTriangleMeshShape>(&triangles, true);
+  valley->setMargin(0);
+  world.body(valley, 0, at(0, 0, 0));
+  const double x = 0.4 + 0.4 * share(random);
+  const double tilt = 0.5 * share(random);
+  const double y = 4 + 0.25 * share(random);
+  const double z = share(random);
+  const btTransform pose(btQuaternion(at(0, 0, 1), btScalar(tilt)), at(x, y, z));
+  btRigidBody* const capsule = world.body(world.shape<btCapsuleShape>(btScalar(1), btScalar(2)), 1, pose);
+  const double along = share(random), across = share(random);
+  capsule->setLinearVelocity(at(3 * along - 3, -28, across));
+  double deepest = 0;
+  btDispatcher& dispatcher = *world.world().getDispatcher();
+  for (int i = 0; i < 60; ++i) {
+    world.world().stepSimulation(btScalar(1) / 60, 0);
+    for (int m = 0; m < dispatcher.getNumManifolds(); ++m) {
+      const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(m);
+      for (int k = 0; k < manifold.getNumContacts(); ++k) {
+        const btManifoldPoint& point = manifold.getContactPoint(k);
+        // Normals lead to the first body.
+        const double up = static_cast<double>(point.m_normalWorldOnB.y()) * (manifold.getBody0() == capsule ? 1 : -1);
+        if (up < 0) deepest = std::max(deepest, -static_cast<double>(point.getDistance()));
+      }
+    }
+  }
+  return deepest;
+}
+
+TEST(ThinBody, WhatIsPushedOutOfASlopeDidNotComeFromBelow) {
+  for (unsigned start = 0; start < 200; ++start) {
+    ASSERT_EQ(deepest_push_down(start), 0) << "start " << start;
+  }
+}
+
 }  // namespace
 }  // namespace pd::test

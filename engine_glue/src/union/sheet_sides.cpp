@@ -15,7 +15,7 @@ constexpr double kOfOneWay = 0.9;
 constexpr double kOverEdge = 0.5;
 /// Of the way that a body comes in a step at its speed: who has come farther was put there by the host.
 constexpr double kPutThere = 3;
-/// Of the gap up to which there are contacts: triangles that lie so far off a plane are not beside it.
+/// Of the gap up to which there are contacts: a triangle that is met so far off a plane is not beside it.
 constexpr double kBeside = 4;
 
 /// True if a way leads from one side of a triangle's plane to the other.
@@ -82,12 +82,12 @@ Vec3 SheetSides::before(const Vec3& place) const {
   return known_ ? to_pd(last_pose_ * pose_.invXform(to_bullet(local))) : local;
 }
 
-Vec3 SheetSides::beside(std::span<const KnownFront> fronts, const Vec3& normal, const Vec3& corner) const {
+Vec3 SheetSides::beside(std::span<const KnownFront> fronts, const Vec3& normal, const Vec3& place) const {
   Vec3 best = Vec3::Zero();
   double most = kOfOneWay;
   for (const KnownFront& known : fronts) {
     const double cosine = known.front.dot(normal);
-    if (std::abs(cosine) <= most || std::abs(known.front.dot(corner) - known.level) > kBeside * reach_) continue;
+    if (std::abs(cosine) <= most || std::abs(known.front.dot(place) - known.level) > kBeside * reach_) continue;
     most = std::abs(cosine);
     best = cosine > 0 ? normal : Vec3(-normal);
   }
@@ -119,13 +119,21 @@ Vec3 SheetSides::judge(const MetTriangle& met, const Vec3& normal, std::span<con
   bool sure = true;
   if (!was_over && known_ && (overlapping || fast_)) {
     const Vec3 came = before(answer.depth.witness_a);
-    const Vec3 now = mesh_.rotation().transpose() * (answer.depth.witness_a - mesh_.translation());
+    const auto in_mesh = [&](const Vec3& place) -> Vec3 {
+      return mesh_.rotation().transpose() * (place - mesh_.translation());
+    };
+    const Vec3 now = in_mesh(answer.depth.witness_a);
+    // On the triangle, where the body is nearest: a large neighbour may be far off elsewhere.
+    const Vec3 met_at = in_mesh(answer.depth.witness_b);
+    const Vec3 place = met_at - normal.dot(met_at - corner) * normal;
     const bool comes_through = side.dot(now - came) > 0;
-    if (overlapping) {
-      front = beside(std::span(fresh_).subspan(first_of_child_), normal, corner);
-      if (front.isZero() && comes_through) front = beside(memory_->fronts, normal, corner);
-      if (front.isZero() && comes_through && side.dot(before_ - corner) < 0) front = -side;
-    } else if (std::abs(cosine) > kOfOneWay && crosses_plane(came, now, normal, met)) {
+    const bool crossed = !overlapping && std::abs(cosine) > kOfOneWay && crosses_plane(came, now, normal, met);
+    if (overlapping || crossed) {
+      front = beside(std::span(fresh_).subspan(first_of_child_), normal, place);
+      if (front.isZero() && comes_through) front = beside(memory_->fronts, normal, place);
+    }
+    if (front.isZero() && overlapping && comes_through && side.dot(before_ - corner) < 0) front = -side;
+    if (front.isZero() && crossed) {
       // A body that crossed the plane where no triangle is known came through a triangle or around a rim.
       sure = leads_through_one(came, now, normal, around);
       if (sure) front = -side;

@@ -5,8 +5,9 @@
 /// middle has gone through in one step would be pushed on, triangle by triangle to other sides. So a pair remembers,
 /// for each triangle that a body stood over or touched in the last step, the side that it was on (its front), and
 /// contacts that lead back to the other side are replaced by the way out of the front (`along_front`). A triangle that
-/// is new takes after known ones of nearly its direction; where none is known, the way that the body has come since the
-/// last step decides. What leaves a triangle over an edge is free again, so that bodies go around the rim of a sheet as
+/// is new takes after known ones of nearly its direction, where the body meets it near their planes. A body that is
+/// pushed out of those comes back to its side so. Where none is known, the way that the body has come since the last
+/// step decides. What leaves a triangle over an edge is free again, so that bodies go around the rim of a sheet as
 /// ever.
 #pragma once
 
@@ -55,8 +56,8 @@ class SheetSides {
   void end(SheetMemory& memory);
 
  private:
-  /// The front of a triangle that lies beside known ones.
-  [[nodiscard]] Vec3 beside(std::span<const KnownFront> fronts, const Vec3& normal, const Vec3& corner) const;
+  /// The front of a triangle that lies beside known ones. @param place  on the triangle, where the child meets it
+  [[nodiscard]] Vec3 beside(std::span<const KnownFront> fronts, const Vec3& normal, const Vec3& place) const;
   /// Where a material point of the child was in the last step, in the mesh's frame.
   [[nodiscard]] Vec3 before(const Vec3& place) const;
 
