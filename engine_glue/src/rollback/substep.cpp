@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <optional>
 #include <utility>
 
 #include "rollback/part_contacts.hpp"
@@ -92,17 +91,13 @@ void SubStepper::place_kinematics(double time) {
 }
 
 void SubStepper::begin_part() {
-  const auto& objects = world_.getCollisionObjectArray();
-  int bouncing = 0;
-  for (int i = 0; i < objects.size(); ++i) bouncing += objects[i]->getRestitution() > 0 ? 1 : 0;
-  may_bounce_ = bouncing > 1;
   sunk_ = std::exchange(sinking_, {});
   energy_.begin_part();
   if (exact_flight_) flight_.begin_part();
 }
 
 void SubStepper::move(double from, double step, double gap, double slop) {
-  if (may_bounce_ || exact_flight_) flight_.note_start();
+  flight_.note_start();
   move_bodies(from, step, gap, slop);
   if (exact_flight_) flight_.give_back_flags();
   energy_.restore();
@@ -110,7 +105,7 @@ void SubStepper::move(double from, double step, double gap, double slop) {
 
 bool SubStepper::must_repeat(double step) {
   const auto h = static_cast<btScalar>(step);
-  return (exact_flight_ && flight_.misjudged(h)) || (may_bounce_ && energy_.lessen(world_, h));
+  return (exact_flight_ && flight_.misjudged(h)) || energy_.lessen(world_, h);
 }
 
 void SubStepper::finish_move(double step) {
@@ -136,14 +131,11 @@ void SubStepper::move_bodies(double from, double step, double gap, double slop) 
   const btScalar slow = whole ? BT_LARGE_FLOAT : static_cast<btScalar>(slop / step);
   // Pairs that come nearer by less than the slop in a whole step are not searched, and bounce off nothing.
   const btScalar gentle = whole ? static_cast<btScalar>(slop / step) : -BT_LARGE_FLOAT;
-  std::optional<PartContacts> contacts;
-  if (may_bounce_ || !whole) {
-    contacts.emplace(
-        world_.getDispatcher(),
-        PartContacts::Rule{static_cast<btScalar>(kInContactGaps * gap), slow, gentle, sunk_.first, sunk_.second,
-                           static_cast<btScalar>(kTouchingGaps * gap), static_cast<btScalar>(slop)},
-        energy_);
-  }
+  const PartContacts contacts(
+      world_.getDispatcher(),
+      PartContacts::Rule{static_cast<btScalar>(kInContactGaps * gap), slow, gentle, sunk_.first, sunk_.second,
+                         static_cast<btScalar>(kTouchingGaps * gap), static_cast<btScalar>(slop)},
+      energy_);
   if (whole) {
     if (last_cut_) scale_warm_starts(step);
     WorldStep::save_kinematic_state(world_, h);

@@ -103,11 +103,10 @@ class SubStepper {
   btDiscreteDynamicsWorld& world_;
   bool exact_flight_;
   double frame_ = 0;
-  double last_step_ = 0;    ///< that of the impulses that contact points carry; 0: none known
-  bool cut_ = false;        ///< this frame has been accepted in parts
-  bool last_cut_ = false;   ///< the last one was
-  bool may_bounce_ = true;  ///< two bodies have restitution: other worlds are spared what looks after theirs
-  bool driven_ = false;     ///< a kinematic body moves in this frame
+  double last_step_ = 0;   ///< that of the impulses that contact points carry; 0: none known
+  bool cut_ = false;       ///< this frame has been accepted in parts
+  bool last_cut_ = false;  ///< the last one was
+  bool driven_ = false;    ///< a kinematic body moves in this frame
   std::vector<Forces> forces_;
   std::vector<Kinematic> kinematics_;
   std::vector<PairForce> pair_forces_;                                     ///< of the last frame that was not cut

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <span>
 
 #include "stack/body_inertia.hpp"
@@ -28,9 +27,6 @@ detail::BodyInertia inertia_of(const btSolverBody& body) {
   return detail::body_inertia(body.internalGetInvMass(), body.m_originalBody->getInvInertiaTensorWorld(),
                               body.m_angularFactor);
 }
-
-/// Groups of a step that keep an order of elimination from the step before; later ones share the last.
-constexpr std::size_t kMostNewtons = 64;
 
 // A group is left to the sweeps where any of these says so.
 
@@ -63,25 +59,16 @@ btScalar negligible_speed(const SolverBodies& bodies, std::span<const int> group
 
 struct StackSolver::State {
   RowGroups groups;
-  /// One for each group of a step, in the order in which they are solved. Its order of elimination holds while the
-  /// group's bodies keep their neighbours.
-  std::vector<std::unique_ptr<ImpulseNewton>> newtons;
-  std::size_t next_newton = 0;
+  /// Of all groups in turn. Its order of elimination holds while groups have the same pattern.
+  ImpulseNewton newton;
   std::vector<int> place;      ///< of each solver body in `ImpulseNewton::masses`, -1: fixed
   std::vector<int> row_place;  ///< of each row in `ImpulseNewton::rows`
   std::vector<ImpulseNewton::Vector6> moves;
   detail::WaitingBodies waiting;
 
-  ImpulseNewton& newton() {
-    if (next_newton == newtons.size() && next_newton < kMostNewtons) {
-      newtons.push_back(std::make_unique<ImpulseNewton>());
-    }
-    return *newtons[std::min(next_newton, kMostNewtons - 1)];
-  }
-  void read_bodies(const SolverBodies& bodies, const RowGroups::Group& group, ImpulseNewton& newton);
-  void read_rows(const SolverRows& rows, const RowGroups::Group& group, double warm_share, ImpulseNewton& newton);
-  void hand_back(const SolverRows& rows, const RowGroups::Group& group, const ImpulseNewton& newton,
-                 SolverBodies& bodies) const;
+  void read_bodies(const SolverBodies& bodies, const RowGroups::Group& group);
+  void read_rows(const SolverRows& rows, const RowGroups::Group& group, double warm_share);
+  void hand_back(const SolverRows& rows, const RowGroups::Group& group, SolverBodies& bodies) const;
 };
 
 StackSolver::StackSolver(const StackSolverSettings& settings) : settings_(settings), state_(new State) {}
@@ -89,11 +76,6 @@ StackSolver::~StackSolver() { delete state_; }
 
 const btAlignedObjectArray<unsigned>& StackSolver::memory() const { return state_->waiting.entries; }
 void StackSolver::set_memory(const btAlignedObjectArray<unsigned>& memory) { state_->waiting.entries = memory; }
-
-void StackSolver::prepareSolve(int num_bodies, int num_manifolds) {
-  btSequentialImpulseConstraintSolver::prepareSolve(num_bodies, num_manifolds);
-  state_->next_newton = 0;
-}
 
 btScalar StackSolver::solveGroupCacheFriendlyIterations(btCollisionObject** bodies, int num_bodies,
                                                         btPersistentManifold** manifolds, int num_manifolds,
@@ -128,14 +110,13 @@ btScalar StackSolver::begin_at_solution(const btContactSolverInfo& info) {
       tolerance = 0;
       continue;
     }
-    ImpulseNewton& newton = state_->newton();
-    ++state_->next_newton;
-    state_->read_bodies(m_tmpSolverBodyPool, group, newton);
-    state_->read_rows(rows, group, warm_share, newton);
-    const ImpulseNewton::Outcome outcome = newton.solve({.products = kProductsOfRow * group.num_rows,
-                                                         .amiss_at_first = kAmissAtFirst,
-                                                         .spares_trees = sweeps > kHighColumn * info.m_numIterations,
-                                                         .amiss_at_end = kAmissAtEnd});
+    state_->read_bodies(m_tmpSolverBodyPool, group);
+    state_->read_rows(rows, group, warm_share);
+    const ImpulseNewton::Outcome outcome =
+        state_->newton.solve({.products = kProductsOfRow * group.num_rows,
+                              .amiss_at_first = kAmissAtFirst,
+                              .spares_trees = sweeps > kHighColumn * info.m_numIterations,
+                              .amiss_at_end = kAmissAtEnd});
     state_->waiting.note(m_tmpSolverBodyPool, state_->groups.bodies(group), outcome.settled);
     statistics_.factorisations += outcome.factorisations;
     tolerance =
@@ -146,7 +127,7 @@ btScalar StackSolver::begin_at_solution(const btContactSolverInfo& info) {
     }
     ++statistics_.groups;
     if (outcome.settled) {
-      state_->hand_back(rows, group, newton, m_tmpSolverBodyPool);
+      state_->hand_back(rows, group, m_tmpSolverBodyPool);
     } else {
       ++statistics_.unsettled;
     }
@@ -154,7 +135,7 @@ btScalar StackSolver::begin_at_solution(const btContactSolverInfo& info) {
   return tolerance < BT_LARGE_FLOAT ? tolerance : 0;
 }
 
-void StackSolver::State::read_bodies(const SolverBodies& bodies, const RowGroups::Group& group, ImpulseNewton& newton) {
+void StackSolver::State::read_bodies(const SolverBodies& bodies, const RowGroups::Group& group) {
   newton.masses.clear();
   moves.clear();
   for (const int i : groups.bodies(group)) {
@@ -165,8 +146,7 @@ void StackSolver::State::read_bodies(const SolverBodies& bodies, const RowGroups
   }
 }
 
-void StackSolver::State::read_rows(const SolverRows& rows, const RowGroups::Group& group, double warm_share,
-                                   ImpulseNewton& newton) {
+void StackSolver::State::read_rows(const SolverRows& rows, const RowGroups::Group& group, double warm_share) {
   newton.rows.clear();
   for (const int i : groups.rows(group)) {
     const btSolverConstraint& constraint = rows[i];
@@ -209,8 +189,7 @@ void StackSolver::State::read_rows(const SolverRows& rows, const RowGroups::Grou
 }
 
 /// Impulses and what they change of velocities, as a sweep does it.
-void StackSolver::State::hand_back(const SolverRows& rows, const RowGroups::Group& group, const ImpulseNewton& newton,
-                                   SolverBodies& bodies) const {
+void StackSolver::State::hand_back(const SolverRows& rows, const RowGroups::Group& group, SolverBodies& bodies) const {
   std::size_t place_of_row = 0;
   for (const int i : groups.rows(group)) {
     btSolverConstraint& constraint = rows[i];

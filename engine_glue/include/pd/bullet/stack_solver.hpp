@@ -69,8 +69,6 @@ class StackSolver : public btSequentialImpulseConstraintSolver {
   [[nodiscard]] const btAlignedObjectArray<unsigned>& memory() const;
   void set_memory(const btAlignedObjectArray<unsigned>& memory);
 
-  void prepareSolve(int num_bodies, int num_manifolds) override;
-
  protected:
   btScalar solveGroupCacheFriendlyIterations(btCollisionObject** bodies, int num_bodies,
                                              btPersistentManifold** manifolds, int num_manifolds,
