@@ -15,15 +15,6 @@
 
 namespace pd::detail {
 
-namespace {
-
-/// So few triangles, or triangles of so few contacts, are all compared. More are sorted first, or a large body on a
-/// fine mesh would compare every triangle that it meets with every other.
-constexpr std::size_t kFewTriangles = 128;
-constexpr int kFewContacts = 12;
-
-}  // namespace
-
 /// What is collected, where.
 struct NearPieces::Search {
   btVector3 centre;
@@ -48,7 +39,6 @@ void NearPieces::know(const TrianglesAround& around, const btCollisionObjectWrap
   around_ = &around;
   around_pose_ = to_pd(mesh.getWorldTransform());
   around_margin_ = static_cast<double>(mesh.getCollisionShape()->getMargin());
-  known_searches_ = 0;
   known_edges_.begin(around.triangles());
   known_made_.assign(around.triangles().size(), false);
   if (known_.size() < known_made_.size()) known_.resize(known_made_.size());
@@ -146,20 +136,13 @@ void NearPieces::collect_known(const btCollisionObjectWrapper& except, Search& s
     n = around_pose_.rotation().transpose() * beyond->n;
     level = beyond->level - beyond->n.dot(around_pose_.translation());
   }
-  const auto visit = [&](std::size_t i) {
-    const MeshTriangle& triangle = triangles[i];
-    if (triangle.part == except.m_partId && triangle.index == except.m_index) return;
-    const auto height = [&](int corner) { return n.dot(to_pd(triangle.corners[corner])); };
-    if (std::max({height(0), height(1), height(2)}) + around_margin_ <= level) return;
-    add_known(i, search.found);
-  };
-  if (triangles.size() > kFewTriangles && ++known_searches_ > kFewContacts) {
-    if (known_searches_ == kFewContacts + 1) known_sorted_.make(triangles);
-    known_sorted_.each_meeting(lower, upper, visit);
-    return;
-  }
   for (std::size_t i = 0; i < triangles.size(); ++i) {
-    if (boxes_meet(triangles[i].lower, triangles[i].upper, lower, upper)) visit(i);
+    const MeshTriangle& triangle = triangles[i];
+    if (!boxes_meet(triangle.lower, triangle.upper, lower, upper)) continue;
+    if (triangle.part == except.m_partId && triangle.index == except.m_index) continue;
+    const auto height = [&](int corner) { return n.dot(to_pd(triangle.corners[corner])); };
+    if (std::max({height(0), height(1), height(2)}) + around_margin_ <= level) continue;
+    add_known(i, search.found);
   }
 }
 

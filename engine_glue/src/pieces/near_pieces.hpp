@@ -14,7 +14,6 @@
 #include "pieces/compound_facts.hpp"
 #include "pieces/piece_wrapper.hpp"
 #include "pieces/shared_edges.hpp"
-#include "pieces/sorted_triangles.hpp"
 #include "shapes/triangles_around.hpp"
 
 class btConvexShape;
@@ -101,9 +100,7 @@ class NearPieces {
   double around_margin_ = 0;
   std::deque<UnionPiece> known_;  ///< the triangles around the pair at hand
   std::vector<bool> known_made_;
-  SortedTriangles known_sorted_;
   SharedEdges known_edges_;
-  int known_searches_ = 0;  ///< among these, of the pair at hand
 };
 
 /// One piece by its wrapper.
