@@ -463,30 +463,6 @@ TEST(Hull, MemoryPerVertex) {
   EXPECT_EQ(reinterpret_cast<std::uintptr_t>(p.z()) % 64, 0U);
 }
 
-TEST(Hull, IndicesTakeAsFewBytesAsTheBodyNeeds) {
-  // Bodies of 30 vertices: 56 facets and 168 half-edges, of which 3 lists of one byte each.
-  EXPECT_LE(hull(test::sphere_cloud(30, 6)).memory_bytes(), 3300U);
-  EXPECT_LE(hull(test::sphere_cloud(8, 6)).memory_bytes(), 1650U);
-  // 6 V - 12 half-edges: 252 and 258, 65,532 and 65,538. Every one of them is verified.
-  for (const int vertices : {44, 45, 10924, 10925}) {
-    const ConvexPolytope p = hull(test::sphere_cloud(vertices, 7));
-    ASSERT_EQ(p.num_half_edges(), 6 * vertices - 12);
-    EXPECT_EQ(p.storage().width.bytes(), vertices == 44 ? 1U : vertices == 10925 ? 4U : 2U);
-    for (int h = 0; h < p.num_half_edges(); ++h) ASSERT_EQ(p.half_edge(p.half_edge(h).twin).origin, p.target(h));
-  }
-}
-
-TEST(Hull, CallerIdsOfAnySize) {
-  Points points(70000, Vec3::Zero());
-  const int ids[] = {3, 255, 256, 65535, 65536, 69999};
-  const Points corners = test::sphere_cloud(6, 8);
-  for (std::size_t i = 0; i < corners.size(); ++i) points[static_cast<std::size_t>(ids[i])] = corners[i];
-  const ConvexPolytope p = hull(points);
-  for (int v = 0; v < p.num_vertices(); ++v) {
-    EXPECT_EQ(p.vertex(v), points[static_cast<std::size_t>(p.caller_id(v))]);
-  }
-}
-
 TEST(Hull, ConeOverAFineRing) {
   // An apex that sees a rim of thousands of edges.
   Points points;

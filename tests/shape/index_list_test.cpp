@@ -1,12 +1,24 @@
-/// Lists of indices of 1, 2 and 4 bytes: what is written is read again, at the borders of every width, too.
+/// Lists of indices of 1, 2 and 4 bytes: what is written is read again, at the borders of every width, too; and hulls
+/// whose surfaces are stored in them.
 #include "pd/shape/index_list.hpp"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
+#include "pd/shape/convex_polytope.hpp"
+#include "pd/shape/verify.hpp"
+#include "shape/point_clouds.hpp"
+
 namespace pd {
 namespace {
+
+ConvexPolytope hull(const test::Points& points) {
+  const Expected<ConvexPolytope> built = ConvexPolytope::from_points(points);
+  EXPECT_TRUE(built.has_value());
+  EXPECT_EQ(verify_polytope(*built), "");
+  return *built;
+}
 
 TEST(IndexWidth, IsTheLeastThatHoldsTheIndices) {
   EXPECT_EQ(IndexWidth::up_to(0).bytes(), 1U);
@@ -49,6 +61,30 @@ TEST(IndexList, FourBytesHoldMinusOne) {
   width.write(bytes, 1, 5);
   EXPECT_EQ(width.read(bytes, 0), -1);
   EXPECT_EQ(width.read(bytes, 1), 5);
+}
+
+TEST(IndexList, TakesAsFewBytesAsAHullNeeds) {
+  // Bodies of 30 vertices: 56 facets and 168 half-edges, of which three lists of one byte each.
+  EXPECT_LE(hull(test::sphere_cloud(30, 6)).memory_bytes(), 3300U);
+  EXPECT_LE(hull(test::sphere_cloud(8, 6)).memory_bytes(), 1650U);
+  // 6 V - 12 half-edges: 252 and 258, 65,532 and 65,538. Every one of them is verified.
+  for (const int vertices : {44, 45, 10924, 10925}) {
+    const ConvexPolytope p = hull(test::sphere_cloud(vertices, 7));
+    ASSERT_EQ(p.num_half_edges(), 6 * vertices - 12);
+    EXPECT_EQ(p.storage().width.bytes(), vertices == 44 ? 1U : vertices == 10925 ? 4U : 2U);
+    for (int h = 0; h < p.num_half_edges(); ++h) ASSERT_EQ(p.half_edge(p.half_edge(h).twin).origin, p.target(h));
+  }
+}
+
+TEST(IndexList, HoldsCallersIdsOfAnySize) {
+  test::Points points(70000, Vec3::Zero());
+  const std::size_t ids[] = {3, 255, 256, 65535, 65536, 69999};
+  const test::Points corners = test::sphere_cloud(6, 8);
+  for (std::size_t i = 0; i < corners.size(); ++i) points[ids[i]] = corners[i];
+  const ConvexPolytope p = hull(points);
+  for (int v = 0; v < p.num_vertices(); ++v) {
+    EXPECT_EQ(p.vertex(v), points[static_cast<std::size_t>(p.caller_id(v))]);
+  }
 }
 
 }  // namespace
