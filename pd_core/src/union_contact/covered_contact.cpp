@@ -1,6 +1,7 @@
 #include "pd/union_contact/covered_contact.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 
@@ -114,13 +115,21 @@ class SideRule {
     return cover_.frame().place(side_.on_piece(point)) - cover_.own().margin * n;
   }
 
-  /// A solid's facet: each point by itself.
+  /// A solid's facet: each point by itself. All stay where none would and yet nothing lies on their middle: a body in a
+  /// notch that is narrower than the window.
   bool facet_contact(double depth, const Vec3& n, const Vec3& foot, ContactManifold& points) {
-    const int before = points.count;
-    for (int i = points.count - 1; i >= 0; --i) {
-      if (cover_.covered(foot_of(points.points[static_cast<std::size_t>(i)], n), n) > kDecided) drop_point(points, i);
+    std::array<bool, 4> covered{};
+    Vec3 middle = Vec3::Zero();
+    for (int i = 0; i < points.count; ++i) {
+      const Vec3 place = foot_of(points.points[static_cast<std::size_t>(i)], n);
+      covered[static_cast<std::size_t>(i)] = cover_.covered(place, n) > kDecided;
+      middle += place / points.count;
     }
-    if (points.count == before) return false;
+    const auto dropped = std::count(covered.begin(), covered.end(), true);
+    if (dropped == 0 || (dropped == points.count && cover_.lies_free(middle, n))) return false;
+    for (int i = points.count - 1; i >= 0; --i) {
+      if (covered[static_cast<std::size_t>(i)]) drop_point(points, i);
+    }
     if (points.count == 0) points = nearest_free(n, depth, foot);
     return true;
   }
