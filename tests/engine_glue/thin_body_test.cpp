@@ -56,8 +56,24 @@ class OverASheet {
     body->setActivationState(DISABLE_DEACTIVATION);
     return body;
   }
-  void step(int count) {
-    for (int i = 0; i < count; ++i) world_.world().stepSimulation(btScalar(1) / 60, 0);
+  /// The same plate of four boxes, of which one may be through the sheet as a whole and the others not.
+  btRigidBody* plate_of_boxes(const btQuaternion& turn, double height) {
+    auto* const whole = world_.shape<btCompoundShape>();
+    auto* const box = world_.shape<btBoxShape>(at(0.5, 0.015, 0.5));
+    for (const double x : {-0.5, 0.5}) {
+      for (const double z : {-0.5, 0.5}) {
+        whole->addChildShape(btTransform(btQuaternion::getIdentity(), at(x, 0, z)), box);
+      }
+    }
+    const btVector3 reach = btTransform(turn).getBasis().absolute() * at(1, 0.015, 1);
+    btRigidBody* const body =
+        world_.body(whole, 60, btTransform(turn, at(0.3, height + static_cast<double>(reach.y()), -0.2)));
+    body->setFriction(btScalar(0.7));
+    body->setActivationState(DISABLE_DEACTIVATION);
+    return body;
+  }
+  void step(int count, int rate = 60) {
+    for (int i = 0; i < count; ++i) world_.world().stepSimulation(btScalar(1) / btScalar(rate), 0);
   }
   BulletWorld& world() { return world_; }
 
@@ -87,6 +103,37 @@ TEST(ThinBody, DoesNotFallThroughAMesh) {
       }
       EXPECT_EQ(lost, 0) << static_cast<int>(sheet) << ", dropped " << drop << " m";
     }
+  }
+}
+
+/// A child that is through the sheet as a whole after one step is led back, too.
+TEST(ThinBody, OfSeveralPartsDoesNotFallThroughAMesh) {
+  for (const Sheet sheet : {Sheet::two_triangles, Sheet::cells, Sheet::heightfield}) {
+    int lost = 0;
+    for (unsigned start = 0; start < 12; ++start) {
+      std::mt19937 random(start);
+      std::uniform_real_distribution<double> share(-1, 1);
+      const auto next = [&] { return btScalar(share(random)); };
+      btQuaternion turn{next(), next(), next(), next()};
+      turn.normalize();
+      OverASheet scene(sheet);
+      const btRigidBody* const body = scene.plate_of_boxes(turn, 0.05);
+      scene.step(120, 30);
+      lost += height_of(*body) < -0.2 ? 1 : 0;
+    }
+    EXPECT_EQ(lost, 0) << static_cast<int>(sheet);
+  }
+}
+
+/// A small ball leaps over the reach of contacts, and over itself, in one step.
+TEST(ThinBody, ThatIsSmallDoesNotLeapThroughAMesh) {
+  for (const Sheet sheet : {Sheet::two_triangles, Sheet::cells, Sheet::heightfield}) {
+    OverASheet scene(sheet);
+    btRigidBody* const ball =
+        scene.world().body(scene.world().shape<btSphereShape>(btScalar(0.015)), 1, at(0.3, 0.065, -0.2));
+    ball->setActivationState(DISABLE_DEACTIVATION);
+    scene.step(60, 30);
+    EXPECT_NEAR(height_of(*ball), 0.019, 0.005) << static_cast<int>(sheet);
   }
 }
 

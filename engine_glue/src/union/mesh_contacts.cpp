@@ -17,7 +17,6 @@
 #include "pd/union_contact/one_sided.hpp"
 #include "pd/union_contact/piece_memories.hpp"
 #include "pieces/compound_facts.hpp"
-#include "shapes/body_motion.hpp"
 #include "shapes/compound_children.hpp"
 #include "shapes/met_triangle.hpp"
 #include "shapes/moving_body.hpp"
@@ -26,6 +25,7 @@
 #include "union/gentle_ground.hpp"
 #include "union/pieces_in_result.hpp"
 #include "union/sheet_sides.hpp"
+#include "union/step_leap.hpp"
 
 namespace pd::detail {
 
@@ -109,6 +109,9 @@ class MeshContacts final : public UnionContacts {
   void enter_sides(const UnionQuestion& question, const Child& child, const BodyReach& reach);
   /// Sets how far the children reach.
   void reach_out(const UnionQuestion& question);
+  /// Of children that leap over themselves in a step, and so may be through a sheet as a whole, the reach goes back as
+  /// far as they come.
+  void reach_back(const UnionQuestion& question);
   /// Reads the mesh around one of them, or all.
   void read_mesh(const UnionQuestion& question, const btVector3& lower, const btVector3& upper, ThreadBuffers& buffers);
   /// The contacts of one of them. @return false where a piece has no exact form
@@ -136,6 +139,7 @@ class MeshContacts final : public UnionContacts {
   std::vector<Child> children_;               ///< of question.a, or itself
   std::vector<BodyReach> reaches_;            ///< of the children
   btVector3 lower_, upper_;                   ///< of the box around all of them
+  double way_ = 0;                            ///< of the body in a step
   bool together_ = true;                      ///< so close that the mesh is read once for all
   bool still_ = false;                        ///< since all triangles were asked
   std::vector<StandingChild> stand_;          ///< as the children are now
@@ -173,6 +177,24 @@ void MeshContacts::reach_out(const UnionQuestion& question) {
     of_children += surface(reaches_.back().lower(), reaches_.back().upper());
   }
   together_ = children_.size() == 1 || of_children >= kCloseTogether * surface(lower_, upper_);
+}
+
+void MeshContacts::reach_back(const UnionQuestion& question) {
+  const StepLeap step(question, (upper_ - lower_).length());
+  way_ = step.way();
+  const btTransform& pose = question.b.getWorldTransform();
+  const btScalar reach = question.b.getCollisionShape()->getMargin() + question.threshold;
+  for (std::size_t i = 0; i < children_.size(); ++i) {
+    const btVector3 box = reaches_[i].upper() - reaches_[i].lower() - btScalar(2) * btVector3(reach, reach, reach);
+    const btVector3 middle = pose * (btScalar(0.5) * (reaches_[i].lower() + reaches_[i].upper()));
+    const btScalar back = step.over_itself(middle, box, pose.getBasis(), children_.size() == 1);
+    if (back <= 0) continue;
+    const Child& child = children_[i];
+    reaches_[i] =
+        BodyReach(static_cast<const btConvexShape&>(*child.shape), pose.inverseTimes(child.pose), reach + back);
+    lower_.setMin(reaches_[i].lower());
+    upper_.setMax(reaches_[i].upper());
+  }
 }
 
 void MeshContacts::read_mesh(const UnionQuestion& question, const btVector3& lower, const btVector3& upper,
@@ -235,6 +257,7 @@ bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, ThreadB
   look_at(question.a, children_, buffers.near.facts(), core.cache);
   if (children_.empty()) return true;
   reach_out(question);
+  if (!core.settings.one_sided_meshes) reach_back(question);
   sides_.begin(memory.sheet);
   still_ = stand_still(question, core, buffers, memory);
   if (together_) read_mesh(question, lower_, upper_, buffers);
@@ -260,15 +283,9 @@ bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, ThreadB
 
 void MeshContacts::enter_sides(const UnionQuestion& question, const Child& child, const BodyReach& reach) {
   const btTransform& pose = question.b.getWorldTransform();
-  BodyMotion of_a, of_b;
-  const btScalar seconds = question.time;
-  const bool moves = motion_of(*question.a.getCollisionObject(), seconds, of_a) &&
-                     motion_of(*question.b.getCollisionObject(), seconds, of_b);
-  const btScalar speed = (of_a.velocity - of_b.velocity).length() + of_a.gained.length() +
-                         (of_a.turn - of_b.turn).length() * (upper_ - lower_).length();
   const Vec3 middle = to_pd(pose * (btScalar(0.5) * (reach.lower() + reach.upper())));
-  sides_.enter(child.index, pose.inverseTimes(child.pose), to_pd(pose), middle,
-               moves ? static_cast<double>(speed * seconds) : 0, static_cast<double>(question.threshold));
+  sides_.enter(child.index, pose.inverseTimes(child.pose), to_pd(pose), middle, way_,
+               static_cast<double>(question.threshold));
 }
 
 bool MeshContacts::stand_still(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers,
@@ -407,11 +424,14 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore&
   if (!together_) read_mesh(question, reach.lower(), reach.upper(), buffers);
   const std::size_t first = triangles_.size();
   choose_triangles(place, buffers.around, memory.standing);
-  if (triangles_.size() == first) return true;
+  const bool one_sided = core.settings.one_sided_meshes;
+  if (triangles_.size() == first) {
+    if (!one_sided) sides_.pass(child.index, pose.inverseTimes(child.pose));
+    return true;
+  }
   const ChildInResult piece(question.result, question.a, child);
   const btCollisionObjectWrapper& a = piece.wrapper();
   const auto threshold = static_cast<double>(question.threshold);
-  const bool one_sided = core.settings.one_sided_meshes;
   if (!one_sided) enter_sides(question, child, reach);
   const auto met_of_child = std::span<const MetTriangle>(triangles_).subspan(first);
   ChildOnGround standing({question, a, is_part(a) ? a.m_index : -1, met_of_child, one_sided ? nullptr : &sides_}, core,

@@ -34,6 +34,9 @@ class SheetSides {
   /// @param reach   up to which gap there are contacts
   void enter(int child, const btTransform& pose, const Pose& mesh, const Vec3& middle, double way, double reach);
 
+  /// Instead of `enter`: no triangle is near the child.
+  void pass(int child, const btTransform& pose) { poses_.push_back({child, pose}); }
+
   /// True if the child may have come through a triangle that is out of reach now.
   [[nodiscard]] bool fast() const { return fast_; }
 

@@ -126,10 +126,10 @@ bool FlatGround::ask(StandingBody& body, const GroundPlace& place, const GroundT
   }
 
   // 2. The body is put on the plane.
+  if (came_over) return false;
   HalfspaceContact found;
   const auto stand = [&] { return body.stand_on({normal, normal.dot(corner) + ground.margin}, found); };
   if (!stand()) return false;
-  if (came_over && found.manifold.count > 0) return false;
   if (found.manifold.count > 0 && -found.lower > kShallow * (found.highest - found.lower)) {
     // Parts that a sheet cuts leave it on the side of the whole. Else some would push one way and some the other.
     if (!place.is_part || known || ground.one_sided) return false;
