@@ -84,6 +84,14 @@ class OverASheet {
   BulletWorld world_;
 };
 
+btQuaternion any_turn(unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> share(-1, 1);
+  const auto next = [&] { return btScalar(share(random)); };
+  btQuaternion turn{next(), next(), next(), next()};
+  return turn.normalize();
+}
+
 double height_of(const btRigidBody& body) { return static_cast<double>(body.getWorldTransform().getOrigin().y()); }
 
 TEST(ThinBody, DoesNotFallThroughAMesh) {
@@ -91,13 +99,8 @@ TEST(ThinBody, DoesNotFallThroughAMesh) {
     for (const double drop : {0.05, 1.0}) {
       int lost = 0;
       for (unsigned start = 0; start < 20; ++start) {
-        std::mt19937 random(start);
-        std::uniform_real_distribution<double> share(-1, 1);
-        const auto next = [&] { return btScalar(share(random)); };
-        btQuaternion turn{next(), next(), next(), next()};
-        turn.normalize();
         OverASheet scene(sheet);
-        const btRigidBody* const body = scene.plate(turn, drop);
+        const btRigidBody* const body = scene.plate(any_turn(start), drop);
         scene.step(240);
         lost += height_of(*body) < -0.2 ? 1 : 0;
       }
@@ -111,13 +114,8 @@ TEST(ThinBody, OfSeveralPartsDoesNotFallThroughAMesh) {
   for (const Sheet sheet : {Sheet::two_triangles, Sheet::cells, Sheet::heightfield}) {
     int lost = 0;
     for (unsigned start = 0; start < 12; ++start) {
-      std::mt19937 random(start);
-      std::uniform_real_distribution<double> share(-1, 1);
-      const auto next = [&] { return btScalar(share(random)); };
-      btQuaternion turn{next(), next(), next(), next()};
-      turn.normalize();
       OverASheet scene(sheet);
-      const btRigidBody* const body = scene.plate_of_boxes(turn, 0.05);
+      const btRigidBody* const body = scene.plate_of_boxes(any_turn(start), 0.05);
       scene.step(120, 30);
       lost += height_of(*body) < -0.2 ? 1 : 0;
     }
