@@ -18,7 +18,6 @@ ImpulseNewton::Outcome ImpulseNewton::solve(const Limits& limits) {
     outcome.given_up = true;
     return outcome;
   }
-  const bool is_spared = limits.spares_trees && factor_.products() < static_cast<long long>(masses.size());
   impulses_.clear();
   for (const Row& row : rows) impulses_.push_back(row.impulse);
   reached_ = impulses_;
@@ -37,9 +36,10 @@ ImpulseNewton::Outcome ImpulseNewton::solve(const Limits& limits) {
     const double share = step == 0 ? 1 : share_of_step();
     move(share);
     factor_fits = !classify(share == 1 ? limits.amiss_at_end : 0);
-    if (step == 0 && !is_spared && amiss_ > limits.amiss_at_first) {
-      outcome.given_up = true;
-      return outcome;
+    if (step == 0 && amiss_ > limits.amiss_at_first) {
+      outcome.spared = limits.spares_trees && factor_.products() < static_cast<long long>(masses.size());
+      outcome.given_up = !outcome.spared;
+      if (outcome.given_up) return outcome;
     }
     if (!factor_fits || share < 1) continue;
     const bool last = ++rounds == kMostRounds || !round_changed_much();

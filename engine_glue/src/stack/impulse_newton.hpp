@@ -59,6 +59,7 @@ class ImpulseNewton {
     /// At least one round ended: the equations hold, with friction's bounds from the round before. Else `kMostSteps`
     /// were not enough, or an impulse is no number, and impulses are as they were.
     bool settled = false;
+    bool spared = false;    ///< `Limits::spares_trees` kept it from being given up
     bool given_up = false;  ///< by one of `Limits`; impulses are as they were
   };
 

@@ -36,16 +36,18 @@ struct StackSolverStatistics {
 /// - where nothing holds it, or so few bodies stand on each other that the sweeps carry the load themselves;
 /// - where more than a fifth of its rows move, by more than twice the speed that its weight gives it in a step;
 /// - where it is a block whose factorisation fills in (more than 4 products of blocks a row);
-/// - where the first factorisation shows that contacts come and go, unless its bodies stand in a high column. Such a
-///   group is left alone for the next 2 steps, then 4, up to 64.
-/// Neither of the first two leaves a group with a joint, whose ends the sweeps would let part at an impact. All this is
-/// decided by counts, so that the same world gives the same bits.
+/// - where the first factorisation shows that contacts come and go, unless its bodies stand in a high column that has
+///   taken fewer than 96 factorisations in such steps. Each other step that is tried pays four of them back.
+///
+/// A group of the last kind is left alone for the next 2 steps, then 4, up to 64. A group with a joint is left to the
+/// sweeps by the first two only where something holds it, the sweeps carry its load, and no contact moves: at an impact
+/// they would let the ends of a joint part. All this is decided by counts, so that the same world gives the same bits.
 ///
 /// Time: one sparse factorisation a step and group that is solved while the same points carry, and a few more where
 /// points come, go or slip. A factorisation takes O(n) for a tower of n bodies (`stack_growth` measured n^1.13, and
 /// n^1.21 for pyramids of up to 435 bodies). Where all groups of a call are solved, the sweeps end as soon as they mend
 /// nothing. A standing tower takes 1.1 of the step that ten sweeps take, a pyramid 1.6 to 1.8, a wall 1.7 to 2.9. Heaps
-/// and blocks, which are left to the sweeps, take at most 1.1.
+/// and blocks, which are left to the sweeps, take at most 1.1. Columns that fall over take 2 until they are left alone.
 ///
 /// Bodies with angular factors other than 0 and 1 are solved with the square root of the factor on both sides of the
 /// inertia. This differs from Bullet's one-sided product unless the product is diagonal; the sweeps decide.
@@ -64,8 +66,8 @@ class StackSolver : public btSequentialImpulseConstraintSolver {
   [[nodiscard]] const StackSolverStatistics& statistics() const { return statistics_; }
   void reset_statistics() { statistics_ = {}; }
 
-  /// For each body, by its place in the world, the number of steps for which its group is left alone. `BulletSnapshot`
-  /// saves it, and `set_memory` puts it back. Time O(1), and O(bodies) to put it back.
+  /// For each body, by its place in the world, for how many steps its group is left alone, and what it owes (in one
+  /// number). `BulletSnapshot` saves it, and `set_memory` puts it back. Time O(1), and O(bodies) to put it back.
   [[nodiscard]] const btAlignedObjectArray<unsigned>& memory() const;
   void set_memory(const btAlignedObjectArray<unsigned>& memory);
 
