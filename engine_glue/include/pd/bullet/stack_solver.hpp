@@ -39,9 +39,9 @@ struct StackSolverStatistics {
 /// - where the first factorisation shows that contacts come and go, unless its bodies stand in a high column that has
 ///   taken fewer than 96 factorisations in such steps. Each other step that is tried pays four of them back.
 ///
-/// A group of the last kind is left alone for the next 2 steps, then 4, up to 64. A group with a joint is left to the
-/// sweeps by the first two only where something holds it, the sweeps carry its load, and no contact moves: at an impact
-/// they would let the ends of a joint part. All this is decided by counts, so that the same world gives the same bits.
+/// A group of the last kind is left alone for the next 2 steps, then 4, up to 64. The first two leave a group with a
+/// joint to the sweeps only where something holds it, they carry its load, and no contact moves. At an impact they
+/// would let the ends of a joint part. All this is decided by counts, so that the same world gives the same bits.
 ///
 /// Time: one sparse factorisation a step and group that is solved while the same points carry, and a few more where
 /// points come, go or slip. A factorisation takes O(n) for a tower of n bodies (`stack_growth` measured n^1.13, and
