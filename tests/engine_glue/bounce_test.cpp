@@ -94,7 +94,7 @@ class Shapes {
 
   std::unique_ptr<btBoxShape> box_ = std::make_unique<btBoxShape>(at(0.5, 0.5, 0.5));
   std::unique_ptr<btBoxShape> tile_ = std::make_unique<btBoxShape>(at(1, 1, 1));
-  std::array<float, 441> heights_{};
+  std::array<btScalar, 441> heights_{};  // Bullet reads PHY_FLOAT in its own precision
   btTriangleMesh triangles_;
   BulletWorld world_;
 };

@@ -46,10 +46,10 @@ btVector3 place(double x, double y, double z) {
 
 TEST(RollbackGround, BoxesOnARidge) {
   constexpr int kSide = 41;
-  std::vector<float> heights;
+  std::vector<btScalar> heights;  // Bullet reads PHY_FLOAT in its own precision
   for (int j = 0; j < kSide; ++j) {
     for (int i = 0; i < kSide; ++i) {
-      heights.push_back(static_cast<float>(2 - 0.5 * std::abs(i - 20) + 0.05 * std::sin(1.7 * j)));
+      heights.push_back(static_cast<btScalar>(2 - 0.5 * std::abs(i - 20) + 0.05 * std::sin(1.7 * j)));
     }
   }
   Cost all;
