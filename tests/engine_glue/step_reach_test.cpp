@@ -86,7 +86,7 @@ TEST(StepReach, WhatGravityAloneDoesNotCloseHasNoPoints) {
   Hovering near(btScalar(0.2) * threshold());
   near.step();
   EXPECT_EQ(near.points(), 4);
-  // As a brick beside another one in a wall.
+  // The body is a brick beside another one in a wall.
   Hovering beside(btScalar(0.1) * threshold());
   beside.world.setGravity(btVector3(0, 0, 0));
   beside.step();

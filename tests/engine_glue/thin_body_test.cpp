@@ -56,7 +56,7 @@ class OverASheet {
     body->setActivationState(DISABLE_DEACTIVATION);
     return body;
   }
-  /// The same plate of four boxes, of which one may be through the sheet as a whole and the others not.
+  /// A plate of that size, made of four boxes. One of them may be through the sheet as a whole and the others not.
   btRigidBody* plate_of_boxes(const btQuaternion& turn, double height) {
     auto* const whole = world_.shape<btCompoundShape>();
     auto* const box = world_.shape<btBoxShape>(at(0.5, 0.015, 0.5));

@@ -34,7 +34,7 @@ TEST(IndexList, GivesBackWhatWasWrittenInAnyOrder) {
     const IndexWidth width = IndexWidth::up_to(most);
     const std::vector<std::int32_t> wanted = {most, 0, 1, most - 1, most / 2, 7};
     const auto count = static_cast<std::int32_t>(wanted.size());
-    // What lies behind the list must not be seen.
+    // A read must not see the bytes behind the list.
     std::vector<std::byte> bytes(wanted.size() * width.bytes() + IndexWidth::kReadableBehind, std::byte{0xAB});
     for (std::size_t i = wanted.size(); i-- > 0;) width.write(bytes.data(), i, wanted[i]);
     for (std::size_t i = 0; i < IndexWidth::kReadableBehind; ++i) {

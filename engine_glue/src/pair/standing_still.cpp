@@ -8,7 +8,7 @@ namespace pd::detail {
 
 namespace {
 
-/// Of the gap up to which there are contacts: who has moved by less stands still.
+/// A body that has moved by less than this share of the reach of contacts stands still.
 constexpr double kHardly = 1.0 / 32;
 
 }  // namespace

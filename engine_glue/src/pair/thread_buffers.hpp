@@ -34,7 +34,7 @@ struct SolverCounters {
       nanoseconds, exact_signs, wider, covered, skipped_triangles, deep_unions, deep_unions_nearly, deep_unions_left;
 };
 
-/// What a room above works with in a call, made there when it is first needed.
+/// Base of the buffers that a room above needs in a call. The room makes them when it first needs them.
 struct WorkingMemory {
   WorkingMemory() = default;
   virtual ~WorkingMemory() = default;

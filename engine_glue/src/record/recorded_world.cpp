@@ -56,7 +56,7 @@ const btCollisionShape* leaf_of(const btCollisionObject& object, int index) {
 
 bool is_mesh(const btCollisionShape& shape) { return shape.isConcave() && has_parts(shape); }
 
-/// What `ask` says of the dispatcher's algorithm for two shapes; for a triangle of those that are meshes.
+/// Asks `ask` about the dispatcher's algorithm for two shapes. A triangle stands for a mesh.
 template <class Ask>
 bool algorithm_is(btCollisionDispatcher& dispatcher, const btCollisionObject& a, const btCollisionShape& shape_a,
                   const btCollisionObject& b, const btCollisionShape& shape_b, Ask&& ask) {

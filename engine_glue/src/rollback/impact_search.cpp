@@ -424,7 +424,7 @@ btTransform ImpactSearch::pose_after(const btCollisionObject& object, double tim
   const auto body = std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& b) { return b.object == &object; });
   btTransform pose = object.getWorldTransform();
   if (body == bodies_.end() || body->travel == 0) return pose;
-  // What a bounce adds does not depend on the length.
+  // A bounce adds the same velocity whatever the length.
   const auto share = static_cast<btScalar>(object.getRestitution() > 0 ? 1 : time / duration_);
   btTransformUtil::integrateTransform(body->start, body->linear.lerp(to_bullet(body->motion.linear_velocity), share),
                                       body->angular.lerp(to_bullet(body->motion.angular_velocity), share),

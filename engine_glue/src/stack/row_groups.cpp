@@ -104,8 +104,8 @@ double RowGroups::sweeps_of_load(const SolverBodies& bodies, const SolverRows& r
   constexpr int kNotHeld = std::numeric_limits<int>::max();
   level_.assign(parent_.size(), -1);
   for (const int body : this->bodies(group)) level_[static_cast<std::size_t>(body)] = kNotHeld;
-  // Of two neighbours none is more than one level above the other. Rows come pair by pair, mostly from the ground up or
-  // down to it, so that two turns find nearly all levels.
+  // Neighbours differ by at most one level. Rows come pair by pair, mostly from the ground up or down to it, so that
+  // two turns find nearly all levels.
   const std::span<const int> all = this->rows(group);
   const auto end = std::lower_bound(all.begin(), all.end(), rows.first_friction()) - all.begin();
   for (bool has_changed = true, is_back = false; has_changed; is_back = !is_back) {

@@ -32,8 +32,9 @@ detail::BodyInertia inertia_of(const btSolverBody& body) {
 
 /// In this many e-folds all but 3e-4 of an error is gone. Sweeps that come as far carry the load themselves.
 constexpr double kFoldsOfSweeps = 8;
-/// The same for a group with joints. These begin each step from nothing, and take back a fifth of their error in each.
-/// With a fiftieth of the load left, their ends are apart by a tenth of the way that a body falls in a step.
+/// A group with joints is left to the sweeps from this many e-folds on. Joints begin each step from nothing, and take
+/// back a fifth of their error in each. With a fiftieth of the load left, their ends are apart by a tenth of the way
+/// that a body falls in a step.
 constexpr double kFoldsOfJoints = 4;
 /// Share of a group's rows that move. It is 0 in stacks that stand, and at most 0.1 where a column of ten lands.
 constexpr double kMovingShare = 0.2;
@@ -68,7 +69,7 @@ bool suits_sweeps(const RowGroups::Group& group, double sweeps, int num_sweeps) 
 
 struct StackSolver::State {
   RowGroups groups;
-  /// Of all groups in turn. Its order of elimination holds while groups have the same pattern.
+  /// Solves all groups in turn. Its order of elimination holds while groups have the same pattern.
   ImpulseNewton newton;
   std::vector<int> place;      ///< of each solver body in `ImpulseNewton::masses`, -1: fixed
   std::vector<int> row_place;  ///< of each row in `ImpulseNewton::rows`

@@ -4,8 +4,9 @@
 /// A group has no name that lasts from step to step, so that its bodies remember, by their place in the world. A group
 /// waits while most of its bodies do. Each trial that does not pay doubles the wait, up to `kLongest` steps.
 ///
-/// What a column takes to be solved while contacts come and go is its debt, and calm steps pay it back. A column that
-/// lands takes up to 32 factorisations in some steps, then stands with one or two. Hulls that tumble take 20 in each.
+/// Factorisations that a column takes while contacts come and go are its debt, and calm steps pay it back. A column
+/// that lands takes up to 32 factorisations in some steps, then stands with one or two. Hulls that tumble take 20 in
+/// each.
 #pragma once
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>

@@ -109,7 +109,7 @@ class MeshContacts final : public UnionContacts {
   void enter_sides(const UnionQuestion& question, const Child& child, const BodyReach& reach);
   /// Sets how far the children reach.
   void reach_out(const UnionQuestion& question);
-  /// Of children that leap over themselves in a step, and so may be through a sheet as a whole, the reach goes back as
+  /// Widens the reach of children that leap over themselves in a step, and so may be through a sheet as a whole, by as
   /// far as they come.
   void reach_back(const UnionQuestion& question);
   /// Reads the mesh around one of them, or all.

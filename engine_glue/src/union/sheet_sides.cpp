@@ -15,7 +15,7 @@ constexpr double kOfOneWay = 0.9;
 constexpr double kOverEdge = 0.5;
 /// Of the way that a body comes in a step at its speed: who has come farther was put there by the host.
 constexpr double kPutThere = 3;
-/// Of the gap up to which there are contacts: a triangle that is met so far off a plane is not beside it.
+/// A triangle that is met farther off a plane than this many reaches of contacts is not beside it.
 constexpr double kBeside = 4;
 
 /// True if a way leads from one side of a triangle's plane to the other.

@@ -41,7 +41,7 @@ class ThreadSearches final : public WorkingMemory {
   std::vector<std::unique_ptr<UnionSearch>> searches_;
 };
 
-/// What the first of a step's trials found, for those after it.
+/// Keeps what the first of a step's trials found for those after it.
 struct FoundInTrial {
   explicit FoundInTrial(MakeContacts kind) : search(kind) {}
 

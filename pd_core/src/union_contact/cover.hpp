@@ -67,7 +67,7 @@ class Cover {
   /// more is found out than whether it is kDecided.
   double covered(Vec3 foot, const Vec3& n);
 
-  /// Whether a point of the piece's facet n lies in no other piece, nor on the surface of one.
+  /// True if a point of the piece's facet n lies in no other piece, nor on the surface of one.
   [[nodiscard]] bool lies_free(const Vec3& foot, const Vec3& n) { return most_covered(foot, n, kBeyondDoubt) < 0; }
 
   /// Whether the feature of the triangle at hand at `foot` is covered beyond doubt by the triangle next to it.

@@ -21,7 +21,7 @@ constexpr double kNearNormal = 0.9;
 constexpr std::size_t kTries = 4;
 /// Of the reach of exits: the other body may stand so far through the plane of one, beside it.
 constexpr double kBeside = 4;
-/// Of the gap up to which there are contacts: what is in each other by less may wait for a step.
+/// Bodies that are in each other by less than this share of the reach of contacts may wait for a step.
 constexpr double kSunk = 1.0 / 16;
 
 double deepest_of(const ContactManifold& points) {

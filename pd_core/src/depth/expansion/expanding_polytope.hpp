@@ -281,8 +281,8 @@ class ExpandingPolytope {
     return 64 * kUnitRoundoff * difference_.reach() * difference_.reach() * difference_.reach();
   }
 
-  /// Of the reach: near contact, where no lower bound is above 0, a face that lies this much farther beyond the origin
-  /// than the one before it has been turned over by rounding. A search would go on from it for thousands of steps.
+  /// Near contact, where no lower bound is above 0, a face that lies farther beyond the origin than the one before it
+  /// by this share of the reach was turned over by rounding. A search would go on from it for thousands of steps.
   static constexpr double kFold = 0x1p-30;
 
   /// Larger surfaces that lost their convexity are rebuilt, which makes them smaller: measured on coherent frames.

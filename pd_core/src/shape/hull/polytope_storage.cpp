@@ -225,8 +225,8 @@ void write_triangle(const Arrays& out) {
   out.facet_half_edges.set_all({0, 1});
 }
 
-/// What a body has in common with one of the same faces and the same widths of indices: all but coordinates, normals
-/// and caller ids.
+/// Copies all but coordinates, normals and caller ids from a body of the same faces and the same widths of indices. The
+/// lists from `neighbour_offsets` to `facet_half_edges` lie one after the other (`take_arrays`).
 void copy_surface(const Storage& body, const Counts& n, const Arrays& out) {
   const std::byte* const end = body.facet_half_edges + n.facets * static_cast<int>(n.width.bytes());
   std::copy(body.neighbour_offsets, end, out.neighbour_offsets.bytes);
