@@ -19,7 +19,7 @@ std::string text(const char* format, double a, double b) {
   return buffer.data();
 }
 
-/// What `Bracket::certified` promises, in units of L.
+/// What `Bracket::certified` promises, in units of S.
 constexpr double kCertifiedWidth = 2e-14;
 
 double ulp_of(double x) {
@@ -36,12 +36,17 @@ ExactLength exact_length(const Vec3& v) {
 class Checker {
  public:
   Checker(const ExactPair& pair, const Verdict& verdict, const Question& question, const PenetrationDepth& answer)
-      : pair_(pair), verdict_(verdict), question_(question), answer_(answer), extent_(difference_extent(pair)) {
+      : pair_(pair),
+        verdict_(verdict),
+        question_(question),
+        answer_(answer),
+        extent_(difference_extent(pair)),
+        size_(size_of_numbers(*question.a, *question.pose_a, *question.b, *question.pose_b)) {
     const double largest = std::max(answer.witness_a.cwiseAbs().maxCoeff(), answer.witness_b.cwiseAbs().maxCoeff());
     // A witness is stored in the common frame: its own rounding is beyond anybody's power.
     tolerance_ = 8 * ulp_of(extent_) + 2 * ulp_of(largest);
     // A certified answer may name any direction inside its bracket.
-    if (question.bracket == Bracket::certified) tolerance_ += kCertifiedWidth * extent_;
+    if (question.bracket == Bracket::certified) tolerance_ += kCertifiedWidth * size_;
   }
 
   Findings run() {
@@ -94,7 +99,7 @@ class Checker {
     }
     const double width = upper - lower;
     if (extent_ > 0) findings_.relative_width = width / extent_;
-    const double allowed = (question_.bracket == Bracket::certified ? kCertifiedWidth : 4e-15) * extent_;
+    const double allowed = question_.bracket == Bracket::certified ? kCertifiedWidth * size_ : 4e-15 * extent_;
     // Where the extent is denormal, one step of the doubles is the least width there is.
     if (width > std::max(allowed, 2 * std::numeric_limits<double>::denorm_min())) {
       fail(Promise::width, std::string(name) + text(" width %g for L = %g", width, extent_));
@@ -256,6 +261,7 @@ class Checker {
   const Question& question_;
   const PenetrationDepth& answer_;
   double extent_;
+  double size_;
   double tolerance_ = 0;
   Findings findings_;
 };
@@ -281,6 +287,10 @@ double difference_extent(const ExactPair& pair) {
     largest = std::max({largest, std::abs(*high_b - *low_a + offset), std::abs(*low_b - *high_a + offset)});
   }
   return std::ldexp(largest, pair.scale());
+}
+
+double size_of_numbers(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b, const Pose& pose_b) {
+  return a.radius() + b.radius() + (pose_b.translation() - pose_a.translation()).norm();
 }
 
 Findings check_answer(const ExactPair& pair, const Verdict& verdict, const Question& question,

@@ -26,7 +26,7 @@ enum class Promise : std::uint8_t {
   finite,       ///< no NaN, no infinity
   contact,      ///< the exact class
   bracket,      ///< lower <= true value <= upper, and the value between them
-  width,        ///< upper - lower <= 2e-14 L (certified), or neighbouring doubles (tightest)
+  width,        ///< upper - lower <= 2e-14 S (certified), or neighbouring doubles (tightest)
   translation,  ///< separates exactly as stored, no longer than upper
   witness,      ///< in the bodies, and their difference is the translation
   normal,       ///< unit, along the translation
@@ -49,6 +49,9 @@ struct Findings {
 
 /// L: the largest |coordinate| of b - a over the posed vertices (rounded).
 [[nodiscard]] double difference_extent(const ExactPair& pair);
+/// S of the answer's promises, without margins.
+[[nodiscard]] double size_of_numbers(const ConvexPolytope& a, const Pose& pose_a, const ConvexPolytope& b,
+                                     const Pose& pose_b);
 
 /// Empty findings when every promise of `PenetrationDepth` is kept.
 [[nodiscard]] Findings check_answer(const ExactPair& pair, const Verdict& verdict, const Question& question,

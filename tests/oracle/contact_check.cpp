@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "oracle/answer_check.hpp"
 #include "pd/shape/convex_polytope.hpp"
 
 namespace pd::oracle {
@@ -30,25 +31,9 @@ SignedInterval signed_distance(const PenetrationDepth& answer) {
   return {0, 0};
 }
 
-double largest_difference(const PosedShape& a, const PosedShape& b) {
-  const Vec3 offset = b.pose.translation() - a.pose.translation();
-  double largest = 0;
-  for (int i = 0; i < 3; ++i) {
-    const auto range = [i](const PosedShape& body) {
-      const ConvexPolytope& p = *body.shape->polytope();
-      double low = HUGE_VAL, high = -HUGE_VAL;
-      for (int v = 0; v < p.num_vertices(); ++v) {
-        const double x = body.pose.rotation().row(i).dot(p.vertex(v));
-        low = std::min(low, x);
-        high = std::max(high, x);
-      }
-      return std::pair(low, high);
-    };
-    const auto [low_a, high_a] = range(a);
-    const auto [low_b, high_b] = range(b);
-    largest = std::max({largest, std::abs(low_b - high_a + offset[i]), std::abs(high_b - low_a + offset[i])});
-  }
-  return largest;
+double size_of_numbers(const PosedShape& a, const PosedShape& b) {
+  return size_of_numbers(*a.shape->polytope(), a.pose, *b.shape->polytope(), b.pose) + a.shape->margin() +
+         b.shape->margin();
 }
 
 std::string check_contact(const PosedShape& a, const PosedShape& b, const PenetrationDepth& answer,

@@ -17,8 +17,8 @@ struct SignedInterval {
 };
 [[nodiscard]] SignedInterval signed_distance(const PenetrationDepth& answer);
 
-/// L of two polytopes: the largest |coordinate| of b - a over their posed vertices.
-[[nodiscard]] double largest_difference(const PosedShape& a, const PosedShape& b);
+/// S of the answer's promises, of two polytopes.
+[[nodiscard]] double size_of_numbers(const PosedShape& a, const PosedShape& b);
 
 /// Empty when the answer keeps the promises of `Bracket::contact`; else the first that it breaks: its interval holds
 /// that of `exact` and is as narrow as `bracket_reached` says, it took no exact sign, `upper` * normal leads out but

@@ -21,7 +21,7 @@ std::string text(const char* format, double a, double b) {
   return buffer.data();
 }
 
-/// What `Bracket::certified` promises, in units of L.
+/// What `Bracket::certified` promises, in units of S.
 constexpr double kCertifiedWidth = 2e-14;
 
 double ulp_of(double x) { return x > 0 ? std::ldexp(1.0, std::ilogb(x) - 52) : 0; }
@@ -49,6 +49,8 @@ class Checker {
   Checker(const Judge& judge, const Verdict& verdict, const Question& question, const PenetrationDepth& answer)
       : judge_(judge), verdict_(verdict), question_(question), answer_(answer) {
     extent_ = verdict.extent;
+    size_ = question.hull_a->radius() + question.hull_b->radius() +
+            (translation_of(question.b.at) - translation_of(question.a.at)).norm();
     const double largest = std::max(answer.witness_a.cwiseAbs().maxCoeff(), answer.witness_b.cwiseAbs().maxCoeff());
     // A witness is stored in the common frame: its own rounding is beyond anybody's power.
     tolerance_ = 8 * ulp_of(extent_) + 2 * ulp_of(largest);
@@ -87,7 +89,7 @@ class Checker {
   void fail(Promise promise, std::string what) { findings_.wrong.push_back({promise, std::move(what)}); }
 
   [[nodiscard]] double allowed_width() const {
-    return std::max(kCertifiedWidth * extent_, question_.bracket == Bracket::contact ? kContactTolerance : 0);
+    return std::max(kCertifiedWidth * size_, question_.bracket == Bracket::contact ? kContactTolerance : 0);
   }
 
   bool finite() {
@@ -295,6 +297,7 @@ class Checker {
   const Question& question_;
   const PenetrationDepth& answer_;
   double extent_ = 0;
+  double size_ = 0;
   double tolerance_ = 0;
   Findings findings_;
 };

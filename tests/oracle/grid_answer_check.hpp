@@ -16,7 +16,7 @@ enum class Promise : std::uint8_t {
   finite,       ///< no NaN, no infinity
   contact,      ///< the exact class
   bracket,      ///< lower <= true value <= upper, and the value between them
-  width,        ///< 2e-14 L (certified; contact: or kContactTolerance), or the value rounded down and up (tightest)
+  width,        ///< 2e-14 S (certified; contact: or kContactTolerance), or the value rounded down and up (tightest)
   translation,  ///< separates exactly as stored, no longer than upper (contact: up to rounding)
   normal,       ///< unit, along the translation, and the depth is attained in its direction
   witness,      ///< in the bodies, and their difference is the translation

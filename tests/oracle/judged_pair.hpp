@@ -29,6 +29,11 @@ class JudgedPair {
   /// L of the answer's promises.
   [[nodiscard]] double extent() const { return difference_extent(exact()); }
 
+  /// S of the answer's promises.
+  [[nodiscard]] double size_of_numbers() const {
+    return oracle::size_of_numbers(*shape_a_->polytope(), points_.pose_a, *shape_b_->polytope(), points_.pose_b);
+  }
+
   /// Empty when every promise is kept; else what was broken, and the pair as an entry for a corpus file.
   [[nodiscard]] std::string complaint(const PenetrationDepth& answer, Bracket bracket) const;
 

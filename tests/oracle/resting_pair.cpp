@@ -130,7 +130,7 @@ std::string check_rounded(const JudgedPair& pair, double margin_a, double margin
                                 : sign < 0 ? ContactClass::separated
                                            : ContactClass::touching;
   if (answer.contact != expected) return "class " + std::string(to_string(answer.contact));
-  const double size = pair.extent() + margin_a + margin_b;
+  const double size = pair.size_of_numbers() + margin_a + margin_b;
   const double low = sign > 0 ? answer.lower : answer.distance_lower;
   const double high = sign > 0 ? answer.upper : answer.distance_upper;
   const double value = sign > 0 ? answer.depth : answer.distance;

@@ -219,7 +219,7 @@ enum { PDEPTH_METHOD_SHALLOW = 4, PDEPTH_METHOD_GRID = 5 };
 
 enum {
   PDEPTH_BRACKET_TIGHTEST = 0,   ///< lower and upper are the exact depth rounded down and up
-  PDEPTH_BRACKET_CERTIFIED = 1,  ///< upper - lower <= 2e-14 L, from doubles with error bounds: quicker
+  PDEPTH_BRACKET_CERTIFIED = 1,  ///< upper - lower within 2e-14 of the size of the numbers given, from doubles: quicker
   /// For physics engines: as fine as `contact_tolerance`, at a bounded cost. A pair that the bracket cannot tell apart
   /// from touching is called touching.
   PDEPTH_BRACKET_CONTACT = 2

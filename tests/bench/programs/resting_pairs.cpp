@@ -78,7 +78,7 @@ class Run {
       ++counts.classes[static_cast<int>(answer.contact)];
       if (bracket == pd::Bracket::tightest) exact = answer;
       const double allowed =
-          std::max(2e-14 * (pair.extent() + rest.margin_a + rest.margin_b), settings.contact_tolerance);
+          std::max(2e-14 * (pair.size_of_numbers() + rest.margin_a + rest.margin_b), settings.contact_tolerance);
       const std::string complaint =
           bracket == pd::Bracket::contact
               ? pd::oracle::check_contact({&*a, pair.a().pose}, {&*b, pair.b().pose}, answer, exact, allowed, scratch)

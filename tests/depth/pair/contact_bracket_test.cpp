@@ -15,7 +15,7 @@ namespace pd {
 namespace {
 
 using oracle::check_contact;
-using oracle::largest_difference;
+using oracle::size_of_numbers;
 
 /// As an engine in single precision has it: 1/64 of what a pose leaves uncertain.
 double tolerance_of(const PosedShape& a, const PosedShape& b, double smaller_radius) {
@@ -32,8 +32,7 @@ class Judge {
     const DepthSettings settings = contact(tolerance);
     const PenetrationDepth exact = penetration_depth(a, b, scratch_);
     const PenetrationDepth answer = penetration_depth(a, b, scratch_, settings);
-    const double allowed =
-        std::max(2e-14 * (largest_difference(a, b) + a.shape->margin() + b.shape->margin()), tolerance);
+    const double allowed = std::max(2e-14 * size_of_numbers(a, b), tolerance);
     EXPECT_EQ(check_contact(a, b, answer, exact, allowed, scratch_), "") << name;
     ++pairs;
     missed += !answer.bracket_reached;
@@ -207,7 +206,7 @@ TEST(ContactBracket, PointsAndSegments) {
     EXPECT_EQ(certified.contact, exact.contact) << name;
     EXPECT_LE(own.lower, truth.upper) << name;
     EXPECT_GE(own.upper, truth.lower) << name;
-    EXPECT_LE(own.upper - own.lower, 2e-14 * (largest_difference(posed_a, posed_b) + 2 * margin)) << name;
+    EXPECT_LE(own.upper - own.lower, 2e-14 * size_of_numbers(posed_a, posed_b)) << name;
     at_once += certified.statistics.support_calls == 1;
     ++asked;
   }

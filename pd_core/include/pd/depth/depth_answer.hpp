@@ -35,12 +35,12 @@ enum class Method : std::uint8_t {
 
 /// How tight the bracket of an exact answer is made.
 enum class Bracket : std::uint8_t {
-  certified,  ///< upper - lower <= 2e-14 L, from doubles with error bounds: the hot path's choice
+  certified,  ///< upper - lower <= 2e-14 S, from doubles with error bounds: the hot path's choice
   tightest,   ///< lower and upper are the exact depth rounded down and up
   /// An answer that a physics engine can use, at a bounded cost. It is no finer than the numbers of the engine's
   /// poses deserve (`DepthSettings::contact_tolerance`), and never needs numbers of unbounded length. Let s be the
   /// signed distance: the distance of A and B, or minus their depth. Doubles, where they cancel double-double, show s
-  /// in an interval no wider than max(2e-14 L, contact_tolerance); for curved bodies max(1e-12 L, contact_tolerance),
+  /// in an interval no wider than max(2e-14 S, contact_tolerance); for curved bodies max(1e-12 L, contact_tolerance),
   /// or delta times s as ever.
   /// - separated: [distance_lower, distance_upper], above 0;
   /// - overlapping: [-upper, -lower], below 0;
@@ -81,7 +81,9 @@ struct Statistics {
 };
 
 /// A depth with its own proof. Lengths are in the unit of the input; vectors and points in the frame that A and B
-/// share. L below is the largest |coordinate| of b - a over the posed vertices.
+/// share. L below is the largest |coordinate| of b - a over the posed vertices; S is the size of the numbers that
+/// polytopes are given in: the distance of A's farthest vertex from its frame's origin, that of B's, the margins, and
+/// |t_B - t_A|, together.
 struct PenetrationDepth {
   ContactClass contact = ContactClass::separated;
   Method method = Method::automatic;  ///< the engine that answered

@@ -1,5 +1,5 @@
 /// @file
-/// How narrow a bracket is asked for: a share of the bodies' size, or a length.
+/// How narrow a bracket is asked for: a share of the size of the numbers that doubles work with, or a length.
 #pragma once
 
 #include <algorithm>
@@ -7,13 +7,14 @@
 namespace pd::detail {
 
 struct BracketWidth {
-  double of_size = 0;  ///< in units of the largest |coordinate| seen
-  double length = 0;   ///< in the unit of the input; the wider of both is enough
+  double of_size =
+      0;  ///< in units of the size: of two polytopes the difference's reach, else the largest |coordinate| seen
+  double length = 0;  ///< in the unit of the input; the wider of both is enough
 
   /// Around the cores: relative errors are of the distance, or of the depth, that is left between the margins.
   double margin = 0;
 
-  [[nodiscard]] double limit(double largest) const { return std::max(of_size * largest, length); }
+  [[nodiscard]] double limit(double size) const { return std::max(of_size * size, length); }
   /// Whether the bracket of the cores' distance is within `relative` of what is left of it.
   [[nodiscard]] bool is_within(double relative, double lower, double upper) const {
     if (margin == 0) return upper <= (1 + relative) * lower;

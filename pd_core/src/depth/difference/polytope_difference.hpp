@@ -163,14 +163,6 @@ class PolytopeDifference {
 
   /// A point inside P, rounded.
   [[nodiscard]] Vec3 centre() const { return rotation_b_ * b_.centre() - rotation_a_ * a_.centre() + offset_; }
-  /// A |coordinate| of P that is about the largest, of the vertices that come first and last: of most bodies two ends.
-  [[nodiscard]] double coordinate_of_ends() const {
-    const int last_a = a_.num_vertices() - 1, last_b = b_.num_vertices() - 1;
-    const Vec3 a0 = turned_a(0), a1 = turned_a(last_a), b0 = turned_b(0), b1 = turned_b(last_b);
-    const Vec3 most = b0.cwiseMax(b1) - a0.cwiseMin(a1) + offset_;
-    const Vec3 least = b0.cwiseMin(b1) - a0.cwiseMax(a1) + offset_;
-    return most.cwiseAbs().cwiseMax(least.cwiseAbs()).maxCoeff();
-  }
   /// At least |x| for every point of P.
   [[nodiscard]] double reach() const { return reach_; }
   /// |computed vertex - exact vertex| (Euclidean). Per coordinate: three products, two sums and the rounding of R for
@@ -191,16 +183,6 @@ class PolytopeDifference {
   [[nodiscard]] static int search(const ConvexPolytope& body, const Vec3& scaled) {
     return body.num_vertices() > kScanLimit ? farthest_in_table(body.storage(), scaled)
                                             : support_vertex(body, scaled, -1);
-  }
-
-  /// A vertex as it is turned, but not moved.
-  [[nodiscard]] Vec3 turned_a(int v) const {
-    if (posed_a_.count > 0) return -Vec3(posed_a_.x[v], posed_a_.y[v], posed_a_.z[v]);
-    return rotation_a_ * a_.vertex(v);
-  }
-  [[nodiscard]] Vec3 turned_b(int v) const {
-    if (posed_b_.count > 0) return {posed_b_.x[v], posed_b_.y[v], posed_b_.z[v]};
-    return rotation_b_ * b_.vertex(v);
   }
 
   const ConvexPolytope& a_;

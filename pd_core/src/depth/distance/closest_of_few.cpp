@@ -19,14 +19,9 @@ FewVerticesInFrames in_frames(const PolytopeDifference& difference) {
           difference.rotation_b().data(), difference.offset().data()};
 }
 
-/// Whether the bracket is narrow for L, of which the simplex tells something at once.
 bool is_narrow(const PolytopeDifference& difference, const ClosestPoint& r, double relative,
                const BracketWidth& width) {
-  double largest = 0;
-  for (int i = 0; i < r.count; ++i) largest = std::max(largest, r.simplex[i].x.cwiseAbs().maxCoeff());
-  const double found = r.upper - r.lower;
-  return found <= width.limit(largest) || width.is_within(relative, r.lower, r.upper) ||
-         found <= width.limit(difference.coordinate_of_ends());
+  return r.upper - r.lower <= width.limit(difference.reach()) || width.is_within(relative, r.lower, r.upper);
 }
 
 /// The bracket of what a search has ended with.

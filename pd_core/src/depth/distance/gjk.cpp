@@ -37,9 +37,12 @@ class DistanceSearch {
         relative_(relative),
         width_(width),
         stack_(stack),
-        support_calls_(support_calls) {}
+        support_calls_(support_calls),
+        size_(kIsOfPolytopes ? difference.reach() : 0) {}
 
-  void see(const DifferenceVertex& s) { largest_ = std::max(largest_, s.x.cwiseAbs().maxCoeff()); }
+  void see(const DifferenceVertex& s) {
+    if constexpr (!kIsOfPolytopes) size_ = std::max(size_, s.x.cwiseAbs().maxCoeff());
+  }
 
   bool has_reached(const LaneSimplex& simplex) {
     r.count = simplex.count();
@@ -65,10 +68,10 @@ class DistanceSearch {
     double height = -s.x.dot(r.normal);
     see_far_side(height);
     bool known = simplex.has_corner(s);
-    if (known || is_narrow(height, largest_) || may_be_farther(height)) {
+    if (known || is_narrow(height, size_) || may_be_farther(height)) {
       s = difference_.certified_support(r.normal, s, stack_);
       height = -s.x.dot(r.normal);
-      r.certified = is_narrow(height, largest_);
+      r.certified = is_narrow(height, size_);
       known = simplex.has_corner(s);
     }
     return !r.certified && !known && length_ - height > kSearchGap * difference_.reach();
@@ -79,18 +82,18 @@ class DistanceSearch {
  private:
   static constexpr bool kIsOfPolytopes = std::is_same_v<Difference, PolytopeDifference>;
 
-  bool is_narrow(double height, double largest) {
+  bool is_narrow(double height, double size) {
     r.lower = height - error_.lower;
-    return r.lower > 0 && (r.upper - r.lower <= width_.limit(largest) || width_.is_within(relative_, r.lower, r.upper));
+    return r.lower > 0 && (r.upper - r.lower <= width_.limit(size) || width_.is_within(relative_, r.lower, r.upper));
   }
 
-  /// What is near the origin says little about L; P's centre says more, and P's far side, which takes a support, all.
+  /// What is near the origin says little about a curved P's size; its centre says more, and its far side, which takes
+  /// a support, all.
   void see_far_side(double height) {
-    if (seen_far_side_ || is_narrow(height, largest_) || !is_narrow(height, difference_.reach())) return;
+    if (kIsOfPolytopes || seen_far_side_ || is_narrow(height, size_) || !is_narrow(height, difference_.reach())) return;
     const Vec3 centre = difference_.centre();
-    largest_ = std::max(largest_, centre.cwiseAbs().maxCoeff());
-    if constexpr (kIsOfPolytopes) largest_ = std::max(largest_, difference_.coordinate_of_ends());
-    if (is_narrow(height, largest_)) return;
+    size_ = std::max(size_, centre.cwiseAbs().maxCoeff());
+    if (is_narrow(height, size_)) return;
     see(difference_.support(centre, nullptr));
     ++support_calls_;
     seen_far_side_ = true;
@@ -106,7 +109,7 @@ class DistanceSearch {
   const BracketWidth& width_;
   std::vector<std::int32_t>& stack_;
   std::int64_t& support_calls_;
-  double largest_ = 0;
+  double size_;  ///< what `BracketWidth` measures by
   double length_ = 0;
   bool seen_far_side_ = false;
 };

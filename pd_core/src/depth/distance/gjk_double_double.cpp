@@ -32,7 +32,7 @@ class BoundedSearch {
     out.normal = Vec3::UnitX();
   }
 
-  void see(const DifferenceVertex& s) { largest_ = std::max(largest_, s.x.cwiseAbs().maxCoeff()); }
+  void see(const DifferenceVertex& s) { size_ = std::max(size_, s.x.cwiseAbs().maxCoeff()); }
 
   /// Each nearest point is nearer than the last.
   bool has_reached(const Simplex& simplex) {
@@ -58,14 +58,14 @@ class BoundedSearch {
 
   bool goes_on(const Simplex& /*simplex*/, const Simplex::Corner& s) {
     ClosestPoint& r = out.nearest;
-    see(s.vertex);
+    if constexpr (!std::is_same_v<Difference, PolytopeDifference>) see(s.vertex);
     const double height = -s.vertex.x.dot(toward_);
     if (height - error_.lower > r.lower) {
       r.lower = height - error_.lower;
       out.normal = toward_;
     }
     r.certified =
-        r.lower > 0 && (r.upper - r.lower <= width_.limit(largest_) || width_.is_within(relative_, r.lower, r.upper));
+        r.lower > 0 && (r.upper - r.lower <= width_.limit(size_) || width_.is_within(relative_, r.lower, r.upper));
     // What the formula's own rounding makes of a support on the simplex is no progress.
     return !r.certified && length_ - height > 4 * kUnitRoundoff * difference_.reach() && steps_left_-- > 0;
   }
@@ -80,7 +80,7 @@ class BoundedSearch {
   int steps_left_;
   std::vector<std::int32_t>& stack_;
   std::int64_t& support_calls_;
-  double largest_ = 0;
+  double size_ = std::is_same_v<Difference, PolytopeDifference> ? difference_.reach() : 0;
   double length_ = 0;
   Vec3 toward_;
 };
@@ -92,9 +92,11 @@ ClosestPointWithNormal closest_point_double_double(const Difference& difference,
                                                    double relative, const BracketWidth& width, int max_steps,
                                                    std::vector<std::int32_t>& stack, std::int64_t& support_calls) {
   BoundedSearch search(difference, relative, width, max_steps, stack, support_calls);
-  search.see(first);
-  search.see(difference.support(difference.centre(), nullptr));
-  ++support_calls;
+  if constexpr (!std::is_same_v<Difference, PolytopeDifference>) {
+    search.see(first);
+    search.see(difference.support(difference.centre(), nullptr));
+    ++support_calls;
+  }
   Simplex simplex(corner(first));
   search_closest_point(search, simplex);
   return search.out;

@@ -60,8 +60,6 @@ void set_reference(WarmState& state, InnerSurface& surface, const PolytopeDiffer
   r.uses = 0;
   r.nearest = surface.nearest();
   r.base = state.vertices[static_cast<std::size_t>(surface.face(r.nearest).v[0])];
-  r.largest = 0;
-  for (const DifferenceVertex& v : surface.vertices) r.largest = std::max(r.largest, v.x.cwiseAbs().maxCoeff());
 
   // (|a - base| + |b - base|)^2 <= 2 (|a - base|^2 + |b - base|^2)
   double spreads[kMaxRememberedVertices];
@@ -168,7 +166,6 @@ bool nearest_remembered(const WarmState& state, const PolytopeDifference& differ
   out.distance = std::sqrt(near.keys[nearest]);
   if (!(out.distance <= farthest)) return false;
   out.normal = Vec3(near.nx[nearest], near.ny[nearest], near.nz[nearest]);
-  out.largest = r.largest - (moved.base + moved.turn * r.widest);
   out.faces_seen = near.count;
 
   const auto take = [&](int i) {

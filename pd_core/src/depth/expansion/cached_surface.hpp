@@ -44,7 +44,6 @@ struct WarmReference {
   int nearest = 0;             ///< that face
   Vec3 inner = Vec3::Zero();   ///< a point that every face has behind it ...
   double clearance = 0;        ///< ... by this much at least; 0: nothing is known
-  double largest = 0;          ///< |coordinate| of the vertices
   double widest = 0;           ///< the largest spread
   int uses = 0;                ///< frames that it has answered
   int pause_length = 0;        ///< frames to go without one after one that answered none
@@ -102,7 +101,6 @@ struct RememberedFace {
   double weights[3];            ///< barycentric coordinates of the origin's projection on them
   Vec3 normal;                  ///< outward, any length
   double distance;              ///< of the plane from the origin, rounded
-  double largest;               ///< the surface reaches at least this |coordinate|
   int faces_seen;
 };
 

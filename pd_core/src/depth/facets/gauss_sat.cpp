@@ -185,7 +185,7 @@ GaussSatDepth gauss_sat_depth(const Pose& pose_a, const Pose& pose_b, const Poly
     if (!(inside && certificate.is_no_nearer(pair, height))) least = std::min(least, pair.bound);
   }
   nearest.lower = least - kGaussLowerError * reach;
-  if (!(nearest.lower > 0 && nearest.upper - nearest.lower <= width.limit(found.largest))) return out;
+  if (!(nearest.lower > 0 && nearest.upper - nearest.lower <= width.limit(reach))) return out;
   if (!inside) {
     const double slack = std::max(foot_rounding(difference), 0.125 * width.length);
     const std::optional<Vec3> meeting = meeting_point(difference, nearest.normal, height, slack);

@@ -200,44 +200,6 @@ PD_INLINE void nearest_crossing(Nearest& best, Crossings<Size>& pairs, const Ker
   best.id = best.key < kNone ? static_cast<int>(first) : 0;
 }
 
-/// Greatest and least coordinates of a body.
-struct Extent {
-  Lanes most, least;  ///< x, y, z, x
-};
-
-PD_INLINE void extent(Extent& out, const VertexArrays& v) {
-  const double* const by_axis[4] = {v.x, v.y, v.z, v.x};
-  Lanes most[4], least[4];
-  for (int i = 0; i < 4; ++i) {
-    load(most[i], by_axis[i]);
-    least[i] = most[i];
-    for (int k = kLanes; k < v.count; k += kLanes) {
-      Lanes x;
-      load(x, by_axis[i] + k);
-      most[i] = x > most[i] ? x : most[i];
-      least[i] = x < least[i] ? x : least[i];
-    }
-  }
-  transpose(most[0], most[1], most[2], most[3]);
-  transpose(least[0], least[1], least[2], least[3]);
-  for (int i = 1; i < 4; ++i) {
-    most[0] = most[i] > most[0] ? most[i] : most[0];
-    least[0] = least[i] < least[0] ? least[i] : least[0];
-  }
-  out.most = most[0];
-  out.least = least[0];
-}
-
-PD_INLINE double largest_coordinate(const VertexArrays& a, const VertexArrays& b, const double (&offset)[3]) {
-  Extent of_a, of_b;
-  extent(of_a, a);
-  extent(of_b, b);
-  const Lanes moved = {offset[0], offset[1], offset[2], offset[0]};
-  const Lanes most = of_a.most + of_b.most + moved;
-  const Lanes least = -(of_a.least + of_b.least + moved);
-  return greatest(least > most ? least : most);
-}
-
 template <class Size>
 PD_INLINE void nearest_of_all(NearestByGaussMaps& out, const GaussSatBody& a, const GaussSatBody& b,
                               const double (&offset)[3], const GaussSatErrors& errors, NearGaussPieces* near,
@@ -281,7 +243,6 @@ PD_INLINE void nearest_of_all(NearestByGaussMaps& out, const GaussSatBody& a, co
                           ? list_crossings(pairs, state)
                           : list_in_double_precision(a, b, errors, state, pairs);
   if (!listed) return;
-  out.largest = largest_coordinate(a.posed, b.posed, offset);
   out.outcome = NearestByGaussMaps::Outcome::found;
   out.pieces += pairs.count;
   if (pairs.count > 0) {

@@ -101,7 +101,6 @@ struct NearestByGaussMaps {
   double key = 0;         ///< least of sign * square of distances, of edge pairs that of their nearest corner
   double others_key = 0;  ///< no other facet has a lesser key, but those of the thin pairs listed
   GaussPiece piece{-1, -1, {0, 0}, {0, 0}};  ///< the winner
-  double largest = 0;                        ///< |coordinate| of P
   int pieces = 0;                            ///< measured
 };
 

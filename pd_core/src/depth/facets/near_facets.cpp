@@ -51,7 +51,6 @@ class NearFacetsSearch {
   NearFacets run() {
     if (a_.affine_dimension() != 3 || b_.affine_dimension() != 3) return out_;
     buffers_.candidates.clear();
-    for (const DifferenceVertex& v : surface_.vertices) see(v);
     for (const bool of_a : {true, false}) {
       find_near_arcs({body(of_a), pose(of_a), body(!of_a), pose(!of_a), of_a}, difference_, surface_, radius_,
                      arcs(of_a));
@@ -68,8 +67,6 @@ class NearFacetsSearch {
   }
 
  private:
-  void see(const DifferenceVertex& v) { largest_ = std::max(largest_, v.x.cwiseAbs().maxCoeff()); }
-
   [[nodiscard]] const ConvexPolytope& body(bool of_a) const { return of_a ? a_ : b_; }
   [[nodiscard]] const Pose& pose(bool of_a) const { return of_a ? pose_a_ : pose_b_; }
   [[nodiscard]] NearArcs& arcs(bool of_a) const { return of_a ? buffers_.near_a : buffers_.near_b; }
@@ -100,9 +97,7 @@ class NearFacetsSearch {
 
   DifferenceVertex support(const Vec3& n) {
     ++out_.support_calls;
-    const DifferenceVertex s = difference_.certified_support(n, difference_.support(n, nullptr), stack_);
-    see(s);
-    return s;
+    return difference_.certified_support(n, difference_.support(n, nullptr), stack_);
   }
 
   /// False for an edge too short for doubles.
@@ -259,12 +254,12 @@ class NearFacetsSearch {
         out_.upper = height;
         out_.normal = c.normal;
       }
-      if (upper - lower + hidden_ <= settings_.width * largest_ / reach_) break;
+      if (upper - lower + hidden_ <= settings_.width) break;
     }
     if (hidden_ == 0 && upper < kInfinity) list_nearest(std::min(upper, radius_));
     lower -= hidden_;
     out_.lower = lower * reach_ * (1 - 4 * kUnitRoundoff);
-    out_.certified = lower > 0 && upper < kInfinity && out_.upper - out_.lower <= settings_.width * largest_;
+    out_.certified = lower > 0 && upper < kInfinity && out_.upper - out_.lower <= settings_.width * reach_;
   }
 
   void list_nearest(double beyond) {
@@ -301,9 +296,7 @@ class NearFacetsSearch {
     double least = kInfinity;
     for (const std::int32_t va : {a.from, a.to}) {
       for (const std::int32_t vb : {b.from, b.to}) {
-        const DifferenceVertex v = difference_.vertex(va, vb);
-        see(v);
-        least = std::min(least, v.x.dot(c.normal));
+        least = std::min(least, difference_.vertex(va, vb).x.dot(c.normal));
       }
     }
     return least;
@@ -381,8 +374,7 @@ class NearFacetsSearch {
   double radius_;  ///< no piece farther than this is wanted; divided by the reach, as all lengths below
   double known_;
   double rounding_ = 0;
-  double hidden_ = 0;   ///< the width of all near-degenerate parallelograms together
-  double largest_ = 0;  ///< |coordinate| of P seen, not divided
+  double hidden_ = 0;  ///< the width of all near-degenerate parallelograms together
   NearFacets out_;
 };
 

@@ -52,7 +52,7 @@ FacetContact contact_with(PolytopeQuery& query, const Roles& roles, int facet, i
 bool answer(PolytopeQuery& query, int of, int facet, int near, PenetrationDepth& out, std::int32_t& vertex) {
   const Roles roles(query.pair, of);
   const FacetContact contact = contact_with(query, roles, facet, near);
-  if (!contact.certified || contact.upper - contact.lower > query.width().limit(contact.largest)) return false;
+  if (!contact.certified || contact.upper - contact.lower > query.widest_bracket()) return false;
   vertex = contact.body.id;
   set_contact_on_facet(contact, of == 0, query.pair.margins, roles.pose_body.translation(), out);
   const Feature of_owner{Feature::Kind::facet, facet, -1};

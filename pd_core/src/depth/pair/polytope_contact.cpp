@@ -47,8 +47,8 @@ void answer_inside(PolytopeQuery& query, const ExpansionResult& found, Penetrati
   if (found.upper < least.upper) least = {found.upper, found.normal, face_along(surface, found.normal)};
   set_depth(query.pair, found.lower, least.upper, least.normal, out);
   set_contact_of_face(query, least.face >= 0 ? least.face : found.face, least.normal, out);
-  out.bracket_reached = least.upper - found.lower <= query.width().limit(largest_coordinate(surface)) ||
-                        least.upper <= (1 + query.settings.delta) * found.lower;
+  out.bracket_reached =
+      least.upper - found.lower <= query.widest_bracket() || least.upper <= (1 + query.settings.delta) * found.lower;
 }
 
 /// The signed distance of the cores, between a plane and a point.
@@ -145,7 +145,7 @@ void answer_near_boundary(PolytopeQuery& query, const ExpansionResult& surface, 
   double largest = largest_coordinate(query.buffers.surface);
   const ClosestPoint& nearest = cores.nearest;
   for (int i = 0; i < nearest.count; ++i) largest = std::max(largest, nearest.simplex[i].x.cwiseAbs().maxCoeff());
-  const double limit = query.width().limit(largest);
+  const double limit = query.widest_bracket();
   const auto narrow = [&] { return nearest.upper - cores.lower <= limit; };
   for (int i = 2; i < nearest.count && !narrow(); ++i) {
     const Vec3 corner = nearest.simplex[0].x;

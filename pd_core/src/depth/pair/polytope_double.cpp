@@ -231,8 +231,7 @@ bool answer_among_near_facets(PolytopeQuery& query, const ExpansionResult& surfa
 
 ExpansionGoal expansion_goal(const PolytopeQuery& query) {
   ExpansionGoal goal;
-  goal.absolute = query.width().of_size;
-  goal.width = query.width().length;
+  goal.width = query.widest_bracket();
   goal.relative = query.settings.delta;
   goal.vertices = query.vertices();
   goal.max_steps = ExpansionBudget::max_steps(goal.vertices);
@@ -348,13 +347,7 @@ void set_contact_of_simplex(const PolytopePair& pair, const ClosestPoint& neares
 }
 
 bool narrow_enough(const PolytopeQuery& query, const ExpansionResult& found) {
-  double largest = 0;
-  for (const DifferenceVertex& v : query.buffers.surface.vertices) {
-    largest = std::max(largest, v.x.cwiseAbs().maxCoeff());
-  }
-  return found.upper - found.lower <= query.width().limit(largest) ||
-         found.upper - found.lower <= query.width().limit(query.difference.coordinate_of_ends()) ||
-         found.upper <= (1 + query.settings.delta) * found.lower;
+  return found.upper - found.lower <= query.widest_bracket() || found.upper <= (1 + query.settings.delta) * found.lower;
 }
 
 ExpansionResult bounded(PolytopeQuery& query, ExpansionResult surface, Statistics& statistics) {

@@ -37,7 +37,7 @@ WarmState& bind_to_pair(WarmCertificate& warm, const PolytopePair& pair) {
 
 /// Whether the nearest face lies in a supporting plane of P, which its corners' neighbours tell: the depth.
 bool certify_face(const PolytopeQuery& query, const DifferenceVertex (&corners)[3], const Vec3& normal, double distance,
-                  double largest, ExpansionResult& result) {
+                  ExpansionResult& result) {
   const double squared = normal.squaredNorm();
   if (!(squared > 0)) return false;
   const Vec3 unit = normal / std::sqrt(squared);
@@ -45,7 +45,7 @@ bool certify_face(const PolytopeQuery& query, const DifferenceVertex (&corners)[
   if (!query.difference.confirm_support(unit, s, corners)) return false;
   result.lower = distance - face_error(query.difference);
   result.upper = s.x.dot(unit) + support_plane_error(query.difference);
-  if (!reached(expansion_goal(query), result.lower, result.upper, largest)) return false;
+  if (!reached(expansion_goal(query), result.lower, result.upper, query.difference.reach())) return false;
   result.status = ExpansionStatus::certified;
   result.normal = unit;
   return true;
@@ -59,7 +59,7 @@ bool answer_from_cached_faces(PolytopeQuery& query, PenetrationDepth& out) {
   RememberedFace near;
   ExpansionResult result;
   if (!nearest_remembered(state, query.difference, near) ||
-      !certify_face(query, near.corners, near.normal, near.distance, near.largest, result)) {
+      !certify_face(query, near.corners, near.normal, near.distance, result)) {
     since.pause = since.uses > 0 ? 0 : std::min(2 * since.pause_length + 1, kLongestPause);
     since.pause_length = since.pause;
     return false;
@@ -118,11 +118,9 @@ bool certify_restored_surface(PolytopeQuery& query, ExpansionResult& result, Sta
   const InnerSurface& surface = query.buffers.surface;
   const int f = surface.nearest();
   if (!(surface.key(f) > 0)) return false;
-  double largest = 0;
-  for (const DifferenceVertex& v : surface.vertices) largest = std::max(largest, v.x.cwiseAbs().maxCoeff());
   DifferenceVertex corners[3];
   face_corners(surface, f, corners);
-  if (!certify_face(query, corners, surface.normal(f), std::sqrt(surface.key(f)), largest, result)) return false;
+  if (!certify_face(query, corners, surface.normal(f), std::sqrt(surface.key(f)), result)) return false;
   result.face = f;
   statistics.support_calls += 1;
   statistics.facets_visited += surface.size();
