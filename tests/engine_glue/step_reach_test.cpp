@@ -117,6 +117,34 @@ TEST(StepReach, OnlyTheSideThatComesHasPoints) {
   EXPECT_EQ(turning.points(), 2);
 }
 
+/// Two boxes that fly as one at this speed, along the normal of their contact. One is tilted over the other, so that an
+/// edge is near and the one across it is not.
+int points_of_tilted_pair(btScalar speed) {
+  Hovering pair(10);
+  pair.world.setGravity(btVector3(0, 0, 0));
+  const btScalar near = btScalar(0.01) * threshold(), tilt = btScalar(0.8) * threshold();
+  const btVector3 at = pair.body.getCenterOfMassPosition();
+  const btScalar below = btScalar(0.5) * (1 + btCos(tilt) + btSin(tilt)) + near;
+  btRigidBody other(btRigidBody::btRigidBodyConstructionInfo(1, nullptr, &pair.cube, btVector3(1, 1, 1)));
+  pair.body.setWorldTransform(btTransform(btQuaternion(btVector3(0, 0, 1), tilt), at));
+  other.setWorldTransform(btTransform(btQuaternion::getIdentity(), at - btVector3(0, below, 0)));
+  pair.world.addRigidBody(&other);
+  for (btRigidBody* const body : {&pair.body, &other}) {
+    body->setGravity(btVector3(0, 0, 0));
+    body->setLinearVelocity(btVector3(0, -speed, 0));
+  }
+  pair.step();
+  const int points = pair.points();
+  pair.world.removeRigidBody(&other);
+  return points;
+}
+
+/// If the lower box is stopped, the near edge holds the upper one, unless they are so fast that it would turn far.
+TEST(StepReach, ANearPointHoldsThePairForTheOthers) {
+  EXPECT_EQ(points_of_tilted_pair(1), 2);
+  EXPECT_EQ(points_of_tilted_pair(4), 4);
+}
+
 TEST(StepReach, HostsThatReadPointsGetThemAll) {
   Hovering sensor(btScalar(0.9) * threshold(), btCollisionObject::CF_NO_CONTACT_RESPONSE);
   sensor.step();

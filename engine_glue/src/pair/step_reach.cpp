@@ -17,6 +17,9 @@ constexpr btScalar kNearBeside = btScalar(1. / 64), kNearOfLinks = kNearBeside;
 /// Forces press bodies together if this share of what they add leads one against the other.
 constexpr btScalar kPressing = btScalar(0.25);
 constexpr btScalar kClosing = 2;
+/// Bodies that come no farther in a step than so many thresholds are held apart by one point that is near, if one of
+/// them is stopped.
+constexpr btScalar kHeld = 2;
 /// Bodies that touch without a load are less deep in each other than this share of the breaking threshold.
 constexpr btScalar kTouching = btScalar(1e-3);
 /// Bodies slower than so many steps of gravity may just have been let go, and soon rest.
@@ -48,9 +51,10 @@ btScalar StepReach::of_boxes(const btConvexShape& a, const btConvexShape& b) con
     const btVector3 half = static_cast<const btBoxShape&>(shape).getHalfExtentsWithMargin();
     return btSqrt(motion.turn.length2() * half.length2());
   };
-  const btScalar fastest = std::max({(a_.velocity - b_.velocity).length(), a_.velocity.length(), b_.velocity.length()});
-  const btScalar speed = fastest + turning(a_, a) + turning(b_, b);
-  return std::min(threshold_, kNear * threshold_ + kClosing * seconds_ * speed);
+  const btScalar turn = turning(a_, a) + turning(b_, b);
+  const btScalar together = (a_.velocity - b_.velocity).length() + turn;
+  const btScalar alone = std::max(a_.velocity.length(), b_.velocity.length()) + turn;
+  return std::min(threshold_, std::max(kNear * threshold_ + kClosing * seconds_ * together, seconds_ * alone));
 }
 
 btScalar StepReach::of_pieces_near(const btVector3& place, btScalar radius) const {
@@ -62,7 +66,13 @@ btScalar StepReach::of_pieces_near(const btVector3& place, btScalar radius) cons
 btVector3 StepReach::coming_at(const btVector3& place) const { return b_.velocity_at(place) - a_.velocity_at(place); }
 
 bool StepReach::is_needed(btScalar distance, btScalar closing, btScalar near) const {
-  return distance <= near || distance <= near + kClosing * seconds_ * std::max(btScalar(0), closing);
+  return distance <= near + kClosing * seconds_ * std::max(btScalar(0), closing);
+}
+
+bool StepReach::is_needed(const FreshPoint& point, btScalar near, btScalar held) const {
+  if (point.distance <= near) return true;
+  if (is_needed(point.distance, coming_at(point.point_on_b).dot(point.normal), near)) return true;
+  return std::max(point.distance, held) <= seconds_ * closing_alone(point.point_on_b, point.normal);
 }
 
 btScalar StepReach::closing_alone(const btVector3& place, const btVector3& normal) const {
@@ -84,10 +94,11 @@ bool StepReach::may_be_idle(const FreshPoints& points, btScalar threshold) {
 
 void StepReach::leave_out_idle(FreshPoints& points) const {
   if (all_) return;
-  keep_points(points, [this](const FreshPoint& point) {
-    const btScalar near = are_pressed(point.normal) ? kNear : kNearBeside;
-    return is_needed(point.distance, closing_alone(point.point_on_b, point.normal), near * threshold_);
-  });
+  const btScalar near = threshold_ * (are_pressed(points.points[0].normal) ? kNear : kNearBeside);
+  const bool held = std::any_of(points.points.begin(), points.points.begin() + points.count,
+                                [near](const FreshPoint& point) { return point.distance <= near; });
+  const btScalar held_way = held ? kHeld * threshold_ : 0;
+  keep_points(points, [&](const FreshPoint& point) { return is_needed(point, near, held_way); });
 }
 
 void StepReach::leave_out_idle(ContactManifold& points) const {
@@ -96,8 +107,9 @@ void StepReach::leave_out_idle(ContactManifold& points) const {
   std::size_t kept = 0;
   for (std::size_t k = 0; k < static_cast<std::size_t>(points.count); ++k) {
     const ContactPoint& point = points.points[k];
-    const btScalar closing = coming_at(to_bullet(point.position_b)).dot(normal);
-    if (is_needed(static_cast<btScalar>(-point.depth), closing, kNearOfPieces * threshold_)) {
+    const auto distance = static_cast<btScalar>(-point.depth);
+    const btScalar near = kNearOfPieces * threshold_;
+    if (distance <= near || is_needed(distance, coming_at(to_bullet(point.position_b)).dot(normal), near)) {
       points.points[kept++] = point;
     }
   }
@@ -106,9 +118,8 @@ void StepReach::leave_out_idle(ContactManifold& points) const {
 
 std::array<int, 4> StepReach::leave_out_idle_of_links(FreshPoints& points) const {
   if (!links_) return {0, 1, 2, 3};
-  return keep_points(points, [this](const FreshPoint& point) {
-    return is_needed(point.distance, closing_alone(point.point_on_b, point.normal), kNearOfLinks * threshold_);
-  });
+  return keep_points(points,
+                     [this](const FreshPoint& point) { return is_needed(point, kNearOfLinks * threshold_, 0); });
 }
 
 btScalar StepReach::noise_of_speeds() const { return kTogether * std::min(a_.velocity.length(), b_.velocity.length()); }

@@ -5,7 +5,8 @@
 /// visits it in every sweep and does nothing. Half of the points of a house of cards are such. Left out is what is
 /// apart by more than a quarter of the breaking threshold and twice what the bodies' velocities and forces close until
 /// the next step; the quarter and the two are for what other contacts may do meanwhile. A box that moves may
-/// be stopped by another one: a column that falls as one lands box by box, so that each box's own speed counts as well.
+/// be stopped by another one: a column that falls as one lands box by box, so that each box's own speed counts as well,
+/// once. It does not count where another point of the pair is near and the boxes are slow: that point holds the pair.
 /// Boxes side by side, which no force presses together, as the bricks of a course of a wall, have a sixty-fourth in
 /// place of the quarter: a fifth of a wall's points would be theirs. Of parts of compounds it is half the threshold:
 /// they are linked, and a chain that tautens moves faster than it did. A row of a multibody costs ten times a row of a
@@ -78,6 +79,8 @@ class StepReach {
   [[nodiscard]] btVector3 coming_at(const btVector3& place) const;
   /// @param near  up to which gap all are
   [[nodiscard]] bool is_needed(btScalar distance, btScalar closing, btScalar near) const;
+  /// @param held  the way in a step up to which another point keeps the bodies apart if one of them is stopped
+  [[nodiscard]] bool is_needed(const FreshPoint& point, btScalar near, btScalar held) const;
   /// Below this, a difference of two bodies' speeds is rounding.
   [[nodiscard]] btScalar noise_of_speeds() const;
   /// True if the forces on one of the bodies lead it against the other along a normal (unit, from B to A).
