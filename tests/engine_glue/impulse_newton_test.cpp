@@ -9,9 +9,13 @@
 #include <cmath>
 #include <random>
 
+#include "stack/body_inertia.hpp"
+
 namespace pd::test {
 namespace {
 
+using detail::body_inertia;
+using detail::BodyInertia;
 using detail::ImpulseNewton;
 using Row = ImpulseNewton::Row;
 
@@ -39,6 +43,19 @@ Row rubs(int body, int normal, double friction, double target) {
   row.normal = normal;
   row.friction = friction;
   return row;
+}
+
+TEST(BodyInertia, MassTimesInverseIsTheIdentity) {
+  const btMatrix3x3 turned(btQuaternion(btVector3(1, 2, 3).normalized(), btScalar(0.7)));
+  const btMatrix3x3 inverse = turned.scaled(btVector3(1, 4, btScalar(0.25))) * turned.transpose();
+  for (const btVector3& angular : {btVector3(1, 1, 1), btVector3(1, 0, 1), btVector3(0, 0, 0)}) {
+    for (const btVector3& linear : {btVector3(2, 2, 2), btVector3(2, 0, 2)}) {
+      const BodyInertia body = body_inertia(linear, inverse, angular);
+      EXPECT_TRUE((body.mass * body.inverse).isIdentity(1e-12));
+      EXPECT_EQ(body.moves[1] > 0, linear.y() > 0);
+      EXPECT_EQ(body.moves[4] > 0, angular.y() > 0);
+    }
+  }
 }
 
 TEST(ImpulseNewton, EveryContactOfATowerCarriesWhatIsAbove) {

@@ -20,9 +20,11 @@ namespace pd::detail {
   return result;
 }
 
-/// A body's mass matrix, and its directions that can move (1) or cannot (0), whose mass is 1 and of no account.
+/// A body's mass matrix and its inverse, and its directions that can move (1) or cannot (0), whose mass is 1 and of no
+/// account.
 struct BodyInertia {
   ImpulseNewton::Matrix6 mass = ImpulseNewton::Matrix6::Identity();
+  ImpulseNewton::Matrix6 inverse = ImpulseNewton::Matrix6::Identity();
   ImpulseNewton::Vector6 moves = ImpulseNewton::Vector6::Zero();
 };
 
@@ -36,6 +38,7 @@ struct BodyInertia {
     const double share = static_cast<double>(inverse_mass[i]);
     if (share > 0) {
       result.mass(i, i) = 1 / share;
+      result.inverse(i, i) = share;
       result.moves[i] = 1;
     }
     for (int j = 0; j < 3; ++j) {
@@ -53,6 +56,7 @@ struct BodyInertia {
     turning(i, i) = 1;
   }
   result.mass.bottomRightCorner<3, 3>() = turning.inverse();
+  result.inverse.bottomRightCorner<3, 3>() = turning;
   return result;
 }
 

@@ -67,12 +67,16 @@ void note_unresolved(const btPersistentManifold& manifold, const BodyMotion& a, 
 
 class HeavyLoads {
  public:
-  HeavyLoads(btDiscreteDynamicsWorld& world, SolverCore& core, btScalar seconds)
+  HeavyLoads(btDiscreteDynamicsWorld& world, SolverCore& core, btScalar seconds, ImpulseNewton& newton)
       : world_(world),
         dispatcher_(*world.getDispatcher()),
         core_(core),
         info_(world.getSolverInfo()),
-        seconds_(seconds) {}
+        seconds_(seconds),
+        newton_(newton) {
+    newton_.masses.clear();
+    newton_.rows.clear();
+  }
 
   void carry() {
     if (!find_pairs() || !find_loaded()) return;
@@ -95,7 +99,6 @@ class HeavyLoads {
   struct Body {
     const btRigidBody* body;
     BodyInertia inertia;
-    ImpulseNewton::Matrix6 inverse;  ///< of the mass matrix
     BodyMotion motion;
     btVector3 gains = btVector3(0, 0, 0);  ///< of the velocity of its centre, from the next step's forces
     btVector3 turns = btVector3(0, 0, 0);  ///< of its angular velocity
@@ -228,7 +231,6 @@ class HeavyLoads {
     added.body = body;
     added.inertia = body_inertia(body->getInvMass() * body->getLinearFactor(), body->getInvInertiaTensorWorld(),
                                  body->getAngularFactor());
-    added.inverse = added.inertia.mass.inverse();
     (void)motion_of(*body, seconds_, added.motion);
     added.gains = body->getGravity() * seconds_;
   }
@@ -298,7 +300,7 @@ class HeavyLoads {
       const Body& body = group_[static_cast<std::size_t>(row.body[side])];
       const btVector3 arm = at[side] - body.motion.centre;
       row.jacobian[side] = six(way, arm.cross(way)).cwiseProduct(body.inertia.moves);
-      weight += row.jacobian[side].dot(body.inverse * row.jacobian[side]);
+      weight += row.jacobian[side].dot(body.inertia.inverse * row.jacobian[side]);
       const btVector3 velocity = body.motion.velocity_at(at[side]) + body.gains + body.turns.cross(arm);
       parting += static_cast<double>(velocity.dot(way));
     }
@@ -352,7 +354,7 @@ class HeavyLoads {
   std::vector<Body> group_;
   std::vector<int> manifolds_;
   std::vector<Place> rows_;
-  ImpulseNewton newton_;
+  ImpulseNewton& newton_;  ///< keeps its memory, and the order of elimination while the same bodies touch
 };
 
 }  // namespace
@@ -361,7 +363,8 @@ void carry_heavy_loads(btDiscreteDynamicsWorld& world, SolverCore& core, btScala
   const btContactSolverInfo& info = world.getSolverInfo();
   if (!(seconds > 0) || (info.m_solverMode & SOLVER_USE_WARMSTARTING) == 0 || !(info.m_warmstartingFactor > 0)) return;
   if (!masses_differ(world.getCollisionObjectArray())) return;
-  HeavyLoads(world, core, seconds).carry();
+  thread_local ImpulseNewton newton;  // a few bodies, in every step of worlds whose masses differ: its memory is kept
+  HeavyLoads(world, core, seconds, newton).carry();
 }
 
 }  // namespace pd::detail
