@@ -34,15 +34,21 @@ bool pass_each_other(const PosedShape& a, const PosedShape& b, const FreshPoints
       return step.closed_in_step(point.point_on_b, to_bullet(normal)) <= left;
     });
   };
-  const auto along_a_facet = [&](const PosedShape& body, double outwards) {
+  const FreshPoint& first = points.points[0];
+  const btVector3 on_a = first.point_on_b + first.distance * first.normal;
+  const auto along_a_facet = [&](const PosedShape& body, const btVector3& on_other, double outwards) {
     const ConvexPolytope* const polytope = body.shape->polytope();
     if (polytope == nullptr) return false;
+    const Vec3 other = body.pose.rotation().transpose() * (to_pd(on_other) - body.pose.translation());
     for (int f = 0; f < polytope->num_facets(); ++f) {
-      if (stay_apart(body.pose.rotation() * (outwards * polytope->facet_normal(f)))) return true;
+      const Vec3& normal = polytope->facet_normal(f);
+      // Most facets have the other body's point under them.
+      if (normal.dot(polytope->vertex(polytope->facet_vertices(f)[0]) - other) > 2 * slack) continue;
+      if (stay_apart(body.pose.rotation() * (outwards * normal))) return true;
     }
     return false;
   };
-  return along_a_facet(b, 1) || along_a_facet(a, -1);
+  return along_a_facet(b, on_a, 1) || along_a_facet(a, first.point_on_b, -1);
 }
 
 }  // namespace pd::detail

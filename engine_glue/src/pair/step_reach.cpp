@@ -65,14 +65,11 @@ btScalar StepReach::of_pieces_near(const btVector3& place, btScalar radius) cons
 
 btVector3 StepReach::coming_at(const btVector3& place) const { return b_.velocity_at(place) - a_.velocity_at(place); }
 
-bool StepReach::is_needed(btScalar distance, btScalar closing, btScalar near) const {
-  return distance <= near + kClosing * seconds_ * std::max(btScalar(0), closing);
-}
-
 bool StepReach::is_needed(const FreshPoint& point, btScalar near, btScalar held) const {
-  if (point.distance <= near) return true;
-  if (is_needed(point.distance, coming_at(point.point_on_b).dot(point.normal), near)) return true;
-  return std::max(point.distance, held) <= seconds_ * closing_alone(point.point_on_b, point.normal);
+  const auto closed = [&](btScalar speed) { return std::max(btScalar(0), seconds_ * speed); };
+  return point.distance <= near ||
+         point.distance <= near + kClosing * closed(coming_at(point.point_on_b).dot(point.normal)) ||
+         std::max(point.distance, held) <= closed(closing_alone(point.point_on_b, point.normal));
 }
 
 btScalar StepReach::closing_alone(const btVector3& place, const btVector3& normal) const {
@@ -103,17 +100,10 @@ void StepReach::leave_out_idle(FreshPoints& points) const {
 
 void StepReach::leave_out_idle(ContactManifold& points) const {
   if (all_) return;
-  const btVector3 normal = to_bullet(points.normal);
-  std::size_t kept = 0;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(points.count); ++k) {
-    const ContactPoint& point = points.points[k];
-    const auto distance = static_cast<btScalar>(-point.depth);
-    const btScalar near = kNearOfPieces * threshold_;
-    if (distance <= near || is_needed(distance, coming_at(to_bullet(point.position_b)).dot(normal), near)) {
-      points.points[kept++] = point;
-    }
-  }
-  points.count = static_cast<int>(kept);
+  const auto end = std::remove_if(points.points.begin(), points.points.begin() + points.count, [&](const auto& point) {
+    return !is_needed(fresh_point(points.normal, point), kNearOfPieces * threshold_, BT_LARGE_FLOAT);
+  });
+  points.count = static_cast<int>(end - points.points.begin());
 }
 
 std::array<int, 4> StepReach::leave_out_idle_of_links(FreshPoints& points) const {

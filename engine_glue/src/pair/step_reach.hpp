@@ -78,7 +78,6 @@ class StepReach {
   /// How B's material at a place comes to A's.
   [[nodiscard]] btVector3 coming_at(const btVector3& place) const;
   /// @param near  up to which gap all are
-  [[nodiscard]] bool is_needed(btScalar distance, btScalar closing, btScalar near) const;
   /// @param held  the way in a step up to which another point keeps the bodies apart if one of them is stopped
   [[nodiscard]] bool is_needed(const FreshPoint& point, btScalar near, btScalar held) const;
   /// Below this, a difference of two bodies' speeds is rounding.

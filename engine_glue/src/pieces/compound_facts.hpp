@@ -42,7 +42,10 @@ class CompoundFacts {
   /// To be called for each child near the other body, before any facts are asked for: one that has changed or come next
   /// to another is seen here. (Where Bullet hands over the children one by one, that is when they are asked
   /// themselves.)
-  void look_at(const ChildOf& child, BulletShapeCache& cache) { compared(child, known_of(child.compound), cache); }
+  /// @return its shape, null where it is not convex
+  const std::shared_ptr<CachedShape>& look_at(const ChildOf& child, BulletShapeCache& cache) {
+    return compared(child, known_of(child.compound), cache).shape;
+  }
 
   /// @param slack  as the reach of `neighbours`
   /// @return never `unknown`; `some` where the child is no solid polytope

@@ -144,8 +144,8 @@ class CompoundContacts final : public UnionContacts {
 
  private:
   /// Brings what is remembered of the near children of one body up to date.
-  static void move(const std::vector<Child>& children, std::uint64_t stamp, SolverCore& core, ThreadBuffers& buffers,
-                   std::vector<ChildMotion>& motions);
+  static void move(const btCollisionShape& body, const std::vector<Child>& children, std::uint64_t stamp,
+                   SolverCore& core, ThreadBuffers& buffers, std::vector<ChildMotion>& motions);
   /// One pair's points. @return false where a child has no exact form
   /// @param way  of both children
   /// @param gap  up to which their points can be needed; `reach`: which of them are
@@ -162,14 +162,20 @@ class CompoundContacts final : public UnionContacts {
   DeepUnion deep_;
 };
 
-void CompoundContacts::move(const std::vector<Child>& children, std::uint64_t stamp, SolverCore& core,
-                            ThreadBuffers& buffers, std::vector<ChildMotion>& motions) {
+void CompoundContacts::move(const btCollisionShape& body, const std::vector<Child>& children, std::uint64_t stamp,
+                            SolverCore& core, ThreadBuffers& buffers, std::vector<ChildMotion>& motions) {
   for (const Child& child : children) {
     const auto place = static_cast<std::size_t>(child.index + 1);
     if (place >= motions.size()) motions.resize(place + 1);
     ChildMotion& motion = motions[place];
     const bool met = motion.shape != nullptr;
-    const CachedShape& found = core.find(static_cast<const btConvexShape&>(*child.shape), stamp, motion.shape, buffers);
+    if (child.index < 0) {
+      core.find(static_cast<const btConvexShape&>(*child.shape), stamp, motion.shape, buffers);
+    } else {
+      const ChildOf asked{static_cast<const btCompoundShape&>(body), child.index};
+      motion.shape = buffers.near.facts().look_at(asked, core.cache);
+    }
+    const CachedShape& found = *motion.shape;
     if (met && found.body) {
       double radius = bounding_radius(*found.body);
       if (found.sharp) radius = std::max(radius, bounding_radius(*found.sharp));
@@ -200,10 +206,8 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Thr
   if (children_b_.empty()) children_a_.clear();
   if (!all_convex(children_a_) || !all_convex(children_b_)) return false;
   buffers.near.begin_pair(stamp);
-  move(children_a_, stamp, core, buffers, memory.children[0]);
-  move(children_b_, stamp, core, buffers, memory.children[1]);
-  look_at(a, children_a_, buffers.near.facts(), core.cache);
-  look_at(b, children_b_, buffers.near.facts(), core.cache);
+  move(shape_a, children_a_, stamp, core, buffers, memory.children[0]);
+  move(shape_b, children_b_, stamp, core, buffers, memory.children[1]);
   const StepReach step_reach(result, threshold, static_cast<btScalar>(seconds));
   for (std::size_t i = 0; i < children_a_.size(); ++i) {
     const Child& child_a = children_a_[i];
