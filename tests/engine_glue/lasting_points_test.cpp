@@ -37,7 +37,9 @@ struct Pair {
 
 /// Each point goes through Bullet.
 struct OneByOne : detail::PointSurroundings {
-  [[nodiscard]] bool lasting() const override { return false; }
+  void enter(int) override {}
+  void leave() override {}
+  [[nodiscard]] bool numbers(int, detail::PieceNumbers&) const override { return false; }
 };
 
 /// Each point between pieces of its own, as on a mesh or compound: points that go on are known by their numbers, or go
@@ -48,7 +50,7 @@ struct Pieces : detail::PointSurroundings {
     result.setShapeIdentifiersA(step, k);
     result.setShapeIdentifiersB(7, step + k);
   }
-  [[nodiscard]] bool lasting() const override { return false; }
+  void leave() override {}
   [[nodiscard]] bool numbers(int k, detail::PieceNumbers& out) const override {
     out = {step, k, 7, step + k};
     return at_once;
@@ -113,7 +115,7 @@ void compare(int points, bool pieces, unsigned seed, int& lasting) {
       const unsigned corner = (static_cast<unsigned>(i) + turn) % 4;
       const btVector3 place(corner % 2 == 0 ? btScalar(1) : btScalar(-1), 1, corner < 2 ? btScalar(1) : btScalar(-1));
       const btVector3 own = pieces && random() % 4 == 0 ? (normal + btVector3(within(0.1), 0, 0)).normalized() : normal;
-      fresh.points[i] = {own, pose_b(place), within(0.01), static_cast<int>(corner) + (other_features ? 10 : 0)};
+      fresh.points[i] = {own, pose_b(place), within(0.01), static_cast<int>(corner) + (other_features ? 10 : 0), i};
     }
     const btScalar seconds = btScalar(1) / (random() % 10 == 0 ? 120 : 60);
     for (Pair* pair : {&at_once, &one_by_one}) {
@@ -127,13 +129,12 @@ void compare(int points, bool pieces, unsigned seed, int& lasting) {
                    : 0;
     if (pieces) {
       Pieces together(at_once.result, true, step), apart(one_by_one.result, false, step);
-      detail::replace_points({at_once.manifold, at_once.memory, fresh, {seconds}, at_once.result}, together);
-      detail::replace_points({one_by_one.manifold, one_by_one.memory, fresh, {seconds}, one_by_one.result}, apart);
+      detail::replace_points({at_once.manifold, at_once.memory, fresh, {seconds}, at_once.result, &together});
+      detail::replace_points({one_by_one.manifold, one_by_one.memory, fresh, {seconds}, one_by_one.result, &apart});
     } else {
-      detail::PointSurroundings whole;
       OneByOne alone;
-      detail::replace_points({at_once.manifold, at_once.memory, fresh, {seconds}, at_once.result}, whole);
-      detail::replace_points({one_by_one.manifold, one_by_one.memory, fresh, {seconds}, one_by_one.result}, alone);
+      detail::replace_points({at_once.manifold, at_once.memory, fresh, {seconds}, at_once.result});
+      detail::replace_points({one_by_one.manifold, one_by_one.memory, fresh, {seconds}, one_by_one.result, &alone});
     }
     expect_equal(at_once, one_by_one);
     if (testing::Test::HasFatalFailure()) FAIL() << "step " << step;

@@ -69,9 +69,9 @@ Bounce::Approach Bounce::approach_of(btScalar distance, const btVector3& normal,
   return out;
 }
 
-std::array<int, 4> Bounce::leave_out(FreshPoints& points) const {
-  if (!(restitution_ >= kLeastRestitution)) return {0, 1, 2, 3};
-  return keep_points(points, [this](const FreshPoint& point) {
+void Bounce::leave_out(FreshPoints& points) const {
+  if (!(restitution_ >= kLeastRestitution)) return;
+  keep_points(points, [this](const FreshPoint& point) {
     const btVector3 place_a = point.point_on_b + point.normal * point.distance;
     const Phase phase = approach_of(point.distance, point.normal, place_a, point.point_on_b, restitution_).phase;
     return phase != Phase::coming && (phase != Phase::leaving || !(point.distance > 0));

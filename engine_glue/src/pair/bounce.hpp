@@ -21,8 +21,6 @@
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
-#include <array>
-
 #include "pair/impulse_trend.hpp"
 #include "shapes/body_motion.hpp"
 
@@ -51,8 +49,7 @@ class Bounce {
   /// False: neither body bounces, and nothing is to be done.
   [[nodiscard]] bool possible() const { return possible_; }
   /// Takes out the points that do not touch in this step, or that separate.
-  /// @return the numbers that those left had before.
-  std::array<int, 4> leave_out(FreshPoints& points) const;
+  void leave_out(FreshPoints& points) const;
   /// Sets what the solver makes of a point that has been put into the manifold.
   void set(btManifoldPoint& point, ImpulseTrend& impulse) const;
 

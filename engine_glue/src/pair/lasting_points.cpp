@@ -121,8 +121,7 @@ struct Normals<false> {
 };
 
 template <bool one_piece>
-bool replace_lasting(const PointsOfStep& step, const LastingPoints& lasting, PlacesKnown known,
-                     const PointSurroundings* pieces) {
+bool replace_lasting(const PointsOfStep& step, const LastingPoints& lasting, PlacesKnown known) {
   btPersistentManifold& manifold = step.manifold;
   PairMemory& memory = step.memory;
   const btManifoldResult& result = step.result;
@@ -182,7 +181,7 @@ bool replace_lasting(const PointsOfStep& step, const LastingPoints& lasting, Pla
     btManifoldPoint& point = *entries.at[static_cast<std::size_t>(k)];
     RememberedPoint& remembered = memory.points[lasting.entries[k]];
     if constexpr (!one_piece) {
-      if (pieces->numbers(lasting.points[k], numbers)) set_numbers(numbers, manifold, result, pattern);
+      if (step.pieces->numbers(points[k]->piece, numbers)) set_numbers(numbers, manifold, result, pattern);
       if (!(points[k]->normal == pattern.m_normalWorldOnB)) turn_to(points[k]->normal, pattern);
     }
     copy_kind(pattern, point);
@@ -205,10 +204,9 @@ bool replace_lasting(const PointsOfStep& step, const LastingPoints& lasting, Pla
 
 }  // namespace
 
-bool replace_lasting_points(const PointsOfStep& step, const LastingPoints& lasting, PlacesKnown known,
-                            const PointSurroundings* pieces) {
-  return pieces == nullptr ? replace_lasting<true>(step, lasting, known, pieces)
-                           : replace_lasting<false>(step, lasting, known, pieces);
+bool replace_lasting_points(const PointsOfStep& step, const LastingPoints& lasting, PlacesKnown known) {
+  return step.pieces == nullptr ? replace_lasting<true>(step, lasting, known)
+                                : replace_lasting<false>(step, lasting, known);
 }
 
 }  // namespace pd::detail

@@ -38,9 +38,7 @@ enum class PlacesKnown : std::uint8_t { no, yes };
 
 /// Writes points that go on as Bullet would, one by one and bit for bit, but all at once. Requires that they are within
 /// the breaking threshold, that `points_are_alike`, and that memory knows the entries by their numbers.
-/// @param pieces  knows each point's numbers; nullptr: all stand in one piece, under one normal
 /// @return false: one may have moved too far to be the same, and nothing has changed.
-bool replace_lasting_points(const PointsOfStep& step, const LastingPoints& lasting, PlacesKnown known,
-                            const PointSurroundings* pieces);
+bool replace_lasting_points(const PointsOfStep& step, const LastingPoints& lasting, PlacesKnown known);
 
 }  // namespace pd::detail

@@ -113,10 +113,6 @@ ManifoldPoses poses_of(const btPersistentManifold& manifold) {
           LaneTransform(manifold.getBody1()->getWorldTransform())};
 }
 
-}  // namespace
-
-namespace {
-
 FreshPoint fresh_point(const btVector3& normal, const ContactPoint& point) {
   return {normal, to_bullet(point.position_b), static_cast<btScalar>(-point.depth), point.feature_id};
 }
@@ -199,10 +195,15 @@ void add_by_bullet(const PointsOfStep& step, const ManifoldPoses& poses, const F
   ++step.manifold.getContactPoint(entry).m_lifeTime;
 }
 
+/// True if the points, of which there is one at least, may be written without Bullet.
+bool are_told_by_numbers(const PointsOfStep& step) {
+  PieceNumbers numbers;
+  return step.pieces == nullptr || step.pieces->numbers(step.fresh.points[0].piece, numbers);
+}
+
 /// Whatever became of the old points.
-/// @param pieces  for `replace_lasting_points`
-void replace_any_points(const PointsOfStep& step, const PointSurroundings* pieces, PointSurroundings& surroundings) {
-  const auto& [manifold, memory, fresh, seconds, result] = step;
+void replace_any_points(const PointsOfStep& step) {
+  const auto& [manifold, memory, fresh, seconds, result, pieces] = step;
   const ManifoldPoses poses = poses_of(manifold);
   std::array<btVector3, 4> local_a;
   for (int k = 0; k < fresh.count; ++k) local_a[k] = local_on_a(poses, fresh.points[k]);
@@ -210,11 +211,9 @@ void replace_any_points(const PointsOfStep& step, const PointSurroundings* piece
   drop_parted(manifold, memory, matching);
   const bool same_step = seconds == memory.seconds;
   const btScalar threshold = manifold.getContactBreakingThreshold();
-  PieceNumbers numbers;
   // No point is left if a link of a multibody needs none of them in this step, or if all are about to bounce. Then
   // there is no piece to ask for its numbers.
-  const bool together =
-      fresh.count > 0 && points_are_alike(result) && (pieces == nullptr || surroundings.numbers(0, numbers));
+  const bool together = fresh.count > 0 && points_are_alike(result) && are_told_by_numbers(step);
   std::array<int, 4> entries{-1, -1, -1, -1};  // of new points; -1: no old point goes on in it
   std::array<bool, 4> written{};               // new points
   LastingPoints lasting;
@@ -224,54 +223,25 @@ void replace_any_points(const PointsOfStep& step, const PointSurroundings* piece
     written[k] = together && fresh.points[k].distance <= threshold;
     if (written[k]) lasting.add(i, k);
   }
-  if (lasting.count > 0) replace_lasting_points(step, lasting, PlacesKnown::yes, pieces);
+  if (lasting.count > 0) replace_lasting_points(step, lasting, PlacesKnown::yes);
   for (int k = 0; k < fresh.count; ++k) {
     if (written[k]) continue;
-    surroundings.enter(k);
+    if (pieces != nullptr) pieces->enter(fresh.points[k].piece);
     add_by_bullet(step, poses, fresh.points[k], entries[k], same_step);
-    surroundings.leave();
+    if (pieces != nullptr) pieces->leave();
   }
   memory.seconds = seconds;
   memory.num_points = manifold.getNumContacts();
   for (int i = 0; i < memory.num_points; ++i) memory.points[i].local_a = manifold.getContactPoint(i).m_localPointA;
 }
 
-}  // namespace
-
-namespace {
-
-void replace_all_points(const PointsOfStep& step, PointSurroundings& surroundings) {
-  const auto& [manifold, memory, fresh, seconds, result] = step;
-  const bool one_piece = surroundings.lasting();
-  const PointSurroundings* const pieces = one_piece ? nullptr : &surroundings;
-  PieceNumbers numbers;
+void replace_all_points(const PointsOfStep& step) {
   LastingPoints all;
-  const bool may_last = fresh.count > 0 && (one_piece || surroundings.numbers(0, numbers)) &&
-                        may_all_last(manifold, memory, fresh, result) && order_by_feature(memory, fresh, all);
-  if (!may_last || !replace_lasting_points(step, all, PlacesKnown::no, pieces)) {
-    replace_any_points(step, pieces, surroundings);
-  }
+  const bool may_last = step.fresh.count > 0 && are_told_by_numbers(step) &&
+                        may_all_last(step.manifold, step.memory, step.fresh, step.result) &&
+                        order_by_feature(step.memory, step.fresh, all);
+  if (!may_last || !replace_lasting_points(step, all, PlacesKnown::no)) replace_any_points(step);
 }
-
-/// Leads from a point's number among those that are left to its number before any was left out.
-class PointsLeft : public PointSurroundings {
- public:
-  PointsLeft(const std::array<int, 4>& before, PointSurroundings& all) : before_(before), all_(all) {}
-  void enter(int point) override { all_.enter(before_[static_cast<std::size_t>(point)]); }
-  void leave() override { all_.leave(); }
-  [[nodiscard]] bool numbers(int point, PieceNumbers& out) const override {
-    return all_.numbers(before_[static_cast<std::size_t>(point)], out);
-  }
-  [[nodiscard]] bool lasting() const override { return all_.lasting(); }
-
- private:
-  const std::array<int, 4>& before_;
-  PointSurroundings& all_;
-};
-
-}  // namespace
-
-namespace {
 
 /// Returns the number of the point from which the sweeps over a link's points shall begin: the one that carried most in
 /// the last step, or the deepest one if none carried anything.
@@ -318,19 +288,18 @@ void order_points_of_links(btPersistentManifold& manifold, PairMemory& memory) {
 
 }  // namespace
 
-void replace_points(const PointsOfStep& step, PointSurroundings& surroundings) {
-  const auto& [manifold, memory, fresh, seconds, result] = step;
+void replace_points(const PointsOfStep& step) {
+  const auto& [manifold, memory, fresh, seconds, result, pieces] = step;
   const Bounce bounce(manifold, result, seconds);
   if (bounce.possible()) {
     FreshPoints touching = fresh;
-    const std::array<int, 4> before = bounce.leave_out(touching);
-    PointsLeft left(before, surroundings);
-    replace_all_points({manifold, memory, touching, seconds, result}, left);
+    bounce.leave_out(touching);
+    replace_all_points({manifold, memory, touching, seconds, result, pieces});
     for (int i = 0; i < memory.num_points; ++i) {
       bounce.set(manifold.getContactPoint(i), memory.points[static_cast<std::size_t>(i)].impulse);
     }
   } else {
-    replace_all_points(step, surroundings);
+    replace_all_points(step);
   }
   order_points_of_links(manifold, memory);
   // Bullet calls it from `refreshContactPoints`, which its own algorithms end with.

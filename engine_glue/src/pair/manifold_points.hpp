@@ -19,6 +19,7 @@ struct FreshPoint {
   btVector3 point_on_b;
   btScalar distance;
   std::int64_t feature_id;
+  int piece = 0;  ///< for `PointSurroundings`
 };
 
 struct FreshPoints {
@@ -50,17 +51,16 @@ struct PieceNumbers {
   int part_0 = -1, index_0 = -1, part_1 = -1, index_1 = -1;
 };
 
-/// What stands round a point while `btManifoldResult` takes it in: the piece that it belongs to, for the host's
-/// callbacks.
+/// The pieces that points lie between stand in the result in place of their bodies while `btManifoldResult` takes a
+/// point in, for the host's callbacks.
 class PointSurroundings {
  public:
   virtual ~PointSurroundings() = default;
-  virtual void enter(int) {}
-  virtual void leave() {}
-  /// What `enter` tells the result. @return false: it does not tell it of both bodies
-  [[nodiscard]] virtual bool numbers(int, PieceNumbers&) const { return false; }
-  /// Whether all points do, as those of the last step did, and have one normal.
-  [[nodiscard]] virtual bool lasting() const { return true; }
+  /// @param piece  as of `FreshPoint`
+  virtual void enter(int piece) = 0;
+  virtual void leave() = 0;
+  /// Tells what `enter` tells the result. @return false: it does not tell it of both bodies
+  [[nodiscard]] virtual bool numbers(int piece, PieceNumbers& out) const = 0;
 };
 
 /// A manifold that nobody else writes to, and the points of this step.
@@ -70,12 +70,14 @@ struct PointsOfStep {
   const FreshPoints& fresh;
   StepTime seconds;  ///< of the step
   btManifoldResult& result;
+  /// Null: all points stand in one piece and under one normal, as those of the last step did.
+  PointSurroundings* pieces = nullptr;
 };
 
 /// Puts the points of this step in place of the manifold's. Impulses (with their trend, impulse_trend.hpp), life times
 /// and anchors go from the old points to the new ones by feature, else by place. Points that go on are written together
 /// (lasting_points.hpp), all others by Bullet. Points of bodies that bounce are handed out as bounce.hpp says.
-void replace_points(const PointsOfStep& step, PointSurroundings& surroundings);
+void replace_points(const PointsOfStep& step);
 
 /// Adds points to a manifold that other pairs write to as well.
 /// @param seconds of the step

@@ -70,8 +70,7 @@ class OwnManifold {
       add_points(*manifold_, fresh, seconds, result);
       return;
     }
-    PointSurroundings whole;
-    replace_points({*manifold_, *memory_, fresh, seconds, result}, whole);
+    replace_points({*manifold_, *memory_, fresh, seconds, result});
   }
   /// After Bullet's detector has added points of its own.
   void refresh(btManifoldResult& result) {

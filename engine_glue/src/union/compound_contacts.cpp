@@ -4,7 +4,6 @@
 #include <BulletCollision/CollisionDispatch/btCompoundCollisionAlgorithm.h>
 
 #include <algorithm>
-#include <optional>
 #include <vector>
 
 #include "pair/passing_bodies.hpp"
@@ -27,37 +26,6 @@ namespace {
 constexpr int kMostRefusals = 5;
 
 using ChildPair = std::pair<int, int>;  ///< places in the lists of near children
-
-class ChildrenOfPoint : public PointSurroundings {
- public:
-  ChildrenOfPoint(btManifoldResult& result, const btCollisionObjectWrapper& a, const std::vector<Child>& children_a,
-                  const btCollisionObjectWrapper& b, const std::vector<Child>& children_b,
-                  const std::vector<ChildPair>& pairs)
-      : result_(result), a_(a), children_a_(children_a), b_(b), children_b_(children_b), pairs_(pairs) {}
-  void enter(int pair) override {
-    const auto [i, j] = pairs_[static_cast<std::size_t>(pair)];
-    inside_.emplace(result_, a_, children_a_[static_cast<std::size_t>(i)], b_,
-                    children_b_[static_cast<std::size_t>(j)]);
-  }
-  void leave() override { inside_.reset(); }
-  [[nodiscard]] bool numbers(int pair, PieceNumbers& out) const override {
-    const auto [i, j] = pairs_[static_cast<std::size_t>(pair)];
-    const Child& of_a = children_a_[static_cast<std::size_t>(i)];
-    const Child& of_b = children_b_[static_cast<std::size_t>(j)];
-    out = numbers_in_result(result_, a_, part_of_child(a_, of_a), index_of_child(a_, of_a), part_of_child(b_, of_b),
-                            index_of_child(b_, of_b));
-    return true;
-  }
-
- private:
-  btManifoldResult& result_;
-  const btCollisionObjectWrapper& a_;
-  const std::vector<Child>& children_a_;
-  const btCollisionObjectWrapper& b_;
-  const std::vector<Child>& children_b_;
-  const std::vector<ChildPair>& pairs_;
-  std::optional<ChildrenInResult> inside_;
-};
 
 /// Returns the place of the child of this number in a list, or the list's end. Time O(n).
 std::vector<Child>::const_iterator place_in(const std::vector<Child>& children, int number) {
@@ -137,9 +105,9 @@ class CompoundContacts final : public UnionContacts {
  public:
   bool find(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory,
             Patches& patches) override;
-  void replace(const UnionQuestion& question, Patches& patches, PatchManifolds& manifolds) override {
-    ChildrenOfPoint around(question.result, question.a, children_a_, question.b, children_b_, pairs_);
-    manifolds.replace(patches, question.time, question.result, around);
+  [[nodiscard]] PointPieces pieces_of(int pair) const override {
+    const auto [i, j] = pairs_[static_cast<std::size_t>(pair)];
+    return {children_a_[static_cast<std::size_t>(i)], &children_b_[static_cast<std::size_t>(j)]};
   }
 
  private:

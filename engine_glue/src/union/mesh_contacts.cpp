@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -50,37 +49,6 @@ btScalar surface(const btVector3& lower, const btVector3& upper) {
 /// A number of both, in place of the triangle's part: Bullet's number of that for a body that is no compound.
 int part_of(const Child& child, const MetTriangle& triangle) { return triangle.part ^ ((child.index + 1) << 16); }
 
-/// The child and the triangle that a point lies between.
-class PiecesOfPoint : public PointSurroundings {
- public:
-  PiecesOfPoint(const UnionQuestion& question, const std::vector<Child>& children,
-                const std::vector<MetTriangle>& triangles)
-      : question_(question), children_(children), triangles_(triangles) {}
-  void enter(int place) override {
-    const MetTriangle& triangle = triangles_[static_cast<std::size_t>(place)];
-    child_.emplace(question_.result, question_.a, children_[static_cast<std::size_t>(triangle.child)]);
-    triangle_.emplace(question_.result, question_.b, triangle);
-  }
-  void leave() override {
-    triangle_.reset();
-    child_.reset();
-  }
-  [[nodiscard]] bool numbers(int place, PieceNumbers& out) const override {
-    const MetTriangle& triangle = triangles_[static_cast<std::size_t>(place)];
-    const Child& child = children_[static_cast<std::size_t>(triangle.child)];
-    out = numbers_in_result(question_.result, question_.a, part_of_child(question_.a, child),
-                            index_of_child(question_.a, child), triangle.part, triangle.index);
-    return true;
-  }
-
- private:
-  const UnionQuestion& question_;
-  const std::vector<Child>& children_;
-  const std::vector<MetTriangle>& triangles_;
-  std::optional<ChildInResult> child_;
-  std::optional<TriangleInResult> triangle_;
-};
-
 /// Corners of a plane may be off it by this share of their coordinates, because the author of the mesh rounded them to
 /// Bullet's scalar.
 constexpr double kFlat = sizeof(btScalar) == sizeof(float) ? 0x1p-22 : 0x1p-50;
@@ -89,11 +57,11 @@ class MeshContacts final : public UnionContacts {
  public:
   bool find(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory,
             Patches& patches) override;
-  void replace(const UnionQuestion& question, Patches& patches, PatchManifolds& manifolds) override {
-    PiecesOfPoint around(question, children_, triangles_);
-    manifolds.replace(patches, question.time, question.result, around);
-    if (!still_) remember_points(patches, manifolds.memory().standing);
+  [[nodiscard]] PointPieces pieces_of(int triangle) const override {
+    const MetTriangle& met = triangles_[static_cast<std::size_t>(triangle)];
+    return {children_[static_cast<std::size_t>(met.child)], nullptr, &met};
   }
+  void remember_chosen(const Patches& patches, PairMemory& memory) override;
 
  private:
   /// Compares where the children are with where all triangles were asked about them.
@@ -103,8 +71,6 @@ class MeshContacts final : public UnionContacts {
   static bool may_come_to_rest(const UnionQuestion& question);
   /// The triangles that one of the children is asked about.
   void choose_triangles(int place, const TrianglesAround& around, StandingStill& standing);
-  /// Which triangles made points that were chosen.
-  void remember_points(const Patches& patches, StandingStill& standing) const;
   /// Tells which child's sides of triangles are asked for next.
   void enter_sides(const UnionQuestion& question, const Child& child, const BodyReach& reach);
   /// Sets how far the children reach.
@@ -328,8 +294,9 @@ void MeshContacts::choose_triangles(int place, const TrianglesAround& around, St
   }
 }
 
-void MeshContacts::remember_points(const Patches& patches, StandingStill& standing) const {
-  if (standing.empty()) return;
+void MeshContacts::remember_chosen(const Patches& patches, PairMemory& memory) {
+  StandingStill& standing = memory.standing;
+  if (still_ || standing.empty()) return;
   for (int i = 0; i < patches.size(); ++i) {
     for (int k = 0; k < patches[i].count; ++k) {
       const auto piece = static_cast<std::size_t>(patches[i].points[static_cast<std::size_t>(k)].piece);

@@ -11,34 +11,12 @@ namespace pd::detail {
 
 namespace {
 
-/// Leads from a point's number in its patch to its piece's.
-class PieceOfPoint : public PointSurroundings {
- public:
-  PieceOfPoint(const Patch& patch, PointSurroundings& pieces) : patch_(patch), pieces_(pieces) {}
-  /// Says that points were left out: each point now has the piece of the point that had the number in `before`.
-  void renumber(const std::array<int, 4>& before) { before_ = before; }
-  void enter(int point) override { pieces_.enter(piece_of(point)); }
-  void leave() override { pieces_.leave(); }
-  [[nodiscard]] bool numbers(int point, PieceNumbers& out) const override {
-    return pieces_.numbers(piece_of(point), out);
-  }
-  [[nodiscard]] bool lasting() const override { return false; }
-
- private:
-  [[nodiscard]] int piece_of(int point) const {
-    return patch_.points[static_cast<std::size_t>(before_[static_cast<std::size_t>(point)])].piece;
-  }
-
-  const Patch& patch_;
-  PointSurroundings& pieces_;
-  std::array<int, 4> before_{0, 1, 2, 3};
-};
-
 FreshPoints fresh_points(const Patch& patch) {
   FreshPoints fresh;
   fresh.count = patch.count;
   for (std::size_t k = 0; k < static_cast<std::size_t>(patch.count); ++k) {
     fresh.points[k] = fresh_point(patch.points[k].normal, patch.points[k].contact);
+    fresh.points[k].piece = patch.points[k].piece;
   }
   return fresh;
 }
@@ -102,7 +80,7 @@ std::span<const LastPatch> PatchManifolds::last_patches(std::array<int, kMost>& 
 }
 
 void PatchManifolds::replace(Patches& patches, const StepTime& seconds, btManifoldResult& result,
-                             PointSurroundings& surroundings) {
+                             PointSurroundings& pieces) {
   btPersistentManifold& first = *manifolds_[0]->manifold;
   if (patches.empty()) {
     clear();
@@ -134,10 +112,9 @@ void PatchManifolds::replace(Patches& patches, const StepTime& seconds, btManifo
     }
     Kept& kept = at(m, a, b);
     FreshPoints fresh = fresh_points(patches[heirs[m]]);
-    PieceOfPoint around(patches[heirs[m]], surroundings);
-    if (reach) around.renumber(reach->leave_out_idle_of_links(fresh));
+    if (reach) reach->leave_out_idle_of_links(fresh);
     result.setPersistentManifold(kept.manifold);
-    replace_points({*kept.manifold, kept.memory, fresh, seconds, result}, around);
+    replace_points({*kept.manifold, kept.memory, fresh, seconds, result, &pieces});
   }
   result.setPersistentManifold(&first);
 }

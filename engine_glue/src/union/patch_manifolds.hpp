@@ -34,10 +34,10 @@ class PatchManifolds final : public ManifoldOwner {
   /// What the pair remembers beside its points.
   PairMemory& memory() { return manifolds_[0]->memory; }
 
-  /// Puts this step's points in place of last step's: a patch goes to the manifold that had its normal. `surroundings`
-  /// are entered with the number of the point's piece. Requires: `first` was called. Leaves `result` at the first.
+  /// Puts this step's points in place of last step's: a patch goes to the manifold that had its normal. `pieces` are
+  /// entered with the number of the point's piece. Requires: `first` was called. Leaves `result` at the first.
   /// @param seconds of the step
-  void replace(Patches& patches, const StepTime& seconds, btManifoldResult& result, PointSurroundings& surroundings);
+  void replace(Patches& patches, const StepTime& seconds, btManifoldResult& result, PointSurroundings& pieces);
 
   void clear();
   void release_from(int patch) override;

@@ -56,13 +56,6 @@ inline int index_of_child(const btCollisionObjectWrapper& body, const Child& chi
   return child.index < 0 ? body.m_index : child.told_as;
 }
 
-/// The numbers of a piece of each body, in the result's order.
-inline PieceNumbers numbers_in_result(const btManifoldResult& result, const btCollisionObjectWrapper& a, int part_a,
-                                      int index_a, int part_b, int index_b) {
-  if (result.getBody0Internal() == a.getCollisionObject()) return {part_a, index_a, part_b, index_b};
-  return {part_b, index_b, part_a, index_a};
-}
-
 /// A child of a compound, or the convex body itself.
 class ChildInResult {
  public:
@@ -91,7 +84,7 @@ class ChildrenInResult {
   ChildInResult b_;
 };
 
-/// A triangle of a mesh.
+/// A triangle of a mesh in place of it in the result.
 class TriangleInResult {
  public:
   TriangleInResult(btManifoldResult& result, const btCollisionObjectWrapper& mesh, const MetTriangle& triangle)

@@ -1,6 +1,5 @@
 #include "union/plane_contacts.hpp"
 
-#include <optional>
 #include <vector>
 
 #include "pair/plane_ground.hpp"
@@ -13,42 +12,11 @@ namespace pd::detail {
 
 namespace {
 
-/// The child that a point lies on.
-class ChildOfPoint : public PointSurroundings {
- public:
-  ChildOfPoint(const UnionQuestion& question, const std::vector<Child>& children)
-      : question_(question), children_(children) {}
-  void enter(int place) override {
-    plane_.emplace(question_.result, question_.b);
-    inside_.emplace(question_.result, question_.a, children_[static_cast<std::size_t>(place)]);
-  }
-  void leave() override {
-    inside_.reset();
-    plane_.reset();
-  }
-  [[nodiscard]] bool numbers(int place, PieceNumbers& out) const override {
-    const Child& child = children_[static_cast<std::size_t>(place)];
-    const btCollisionObjectWrapper& plane = question_.b;
-    out = numbers_in_result(question_.result, question_.a, part_of_child(question_.a, child),
-                            index_of_child(question_.a, child), plane.m_partId, plane.m_index);
-    return true;
-  }
-
- private:
-  const UnionQuestion& question_;
-  const std::vector<Child>& children_;
-  std::optional<PieceInResult> plane_;
-  std::optional<ChildInResult> inside_;
-};
-
 class PlaneContacts final : public UnionContacts {
  public:
   bool find(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory,
             Patches& patches) override;
-  void replace(const UnionQuestion& question, Patches& patches, PatchManifolds& manifolds) override {
-    ChildOfPoint around(question, children_);
-    manifolds.replace(patches, question.time, question.result, around);
-  }
+  [[nodiscard]] PointPieces pieces_of(int child) const override { return {children_[static_cast<std::size_t>(child)]}; }
 
  private:
   std::vector<Child> children_;

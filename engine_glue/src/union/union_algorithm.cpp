@@ -3,6 +3,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "pair/solver_core.hpp"
 #include "union/flat_wrapper.hpp"
 #include "union/mesh_contacts.hpp"
+#include "union/pieces_in_result.hpp"
 
 namespace pd::detail {
 
@@ -39,6 +41,51 @@ class ThreadSearches final : public WorkingMemory {
 
  private:
   std::vector<std::unique_ptr<UnionSearch>> searches_;
+};
+
+/// Puts the pieces of points into the result.
+class PiecesOfPoints final : public PointSurroundings {
+ public:
+  PiecesOfPoints(const UnionQuestion& question, const UnionContacts& contacts)
+      : question_(question), contacts_(contacts) {}
+  void enter(int piece) override {
+    const auto& [a, b, time, threshold, stamp, result] = question_;
+    const PointPieces pieces = contacts_.pieces_of(piece);
+    child_of_a_.emplace(result, a, pieces.of_a);
+    if (pieces.child_of_b != nullptr) {
+      child_of_b_.emplace(result, b, *pieces.child_of_b);
+    } else if (pieces.triangle != nullptr) {
+      triangle_.emplace(result, b, *pieces.triangle);
+    } else {
+      whole_b_.emplace(result, b);
+    }
+  }
+  void leave() override {
+    child_of_a_.reset();
+    child_of_b_.reset();
+    triangle_.reset();
+    whole_b_.reset();
+  }
+  [[nodiscard]] bool numbers(int piece, PieceNumbers& out) const override {
+    const btCollisionObjectWrapper &a = question_.a, &b = question_.b;
+    const auto& [of_a, child, triangle] = contacts_.pieces_of(piece);
+    const int part_b = child != nullptr ? part_of_child(b, *child) : triangle != nullptr ? triangle->part : b.m_partId;
+    const int index_b = child != nullptr      ? index_of_child(b, *child)
+                        : triangle != nullptr ? triangle->index
+                                              : b.m_index;
+    out = {part_of_child(a, of_a), index_of_child(a, of_a), part_b, index_b};
+    if (question_.result.getBody0Internal() != a.getCollisionObject()) {
+      out = {out.part_1, out.index_1, out.part_0, out.index_0};
+    }
+    return true;
+  }
+
+ private:
+  const UnionQuestion& question_;
+  const UnionContacts& contacts_;
+  std::optional<ChildInResult> child_of_a_, child_of_b_;
+  std::optional<TriangleInResult> triangle_;
+  std::optional<PieceInResult> whole_b_;
 };
 
 /// Keeps what the first of a step's trials found for those after it.
@@ -141,7 +188,9 @@ void UnionAlgorithm::processCollision(const btCollisionObjectWrapper* a, const b
     auto buffers = core.buffers.lease();
     if (UnionSearch* search = s.find(question, *buffers)) {
       s.bullets.release();
-      search->contacts->replace(question, search->patches, s.manifolds);
+      PiecesOfPoints pieces(question, *search->contacts);
+      s.manifolds.replace(search->patches, question.time, *result, pieces);
+      search->contacts->remember_chosen(search->patches, s.manifolds.memory());
       return;
     }
   }

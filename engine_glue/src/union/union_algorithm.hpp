@@ -9,6 +9,8 @@
 #include "pair/bounce.hpp"
 #include "pd/union_contact/patches.hpp"
 #include "pieces/asked_pieces.hpp"
+#include "shapes/compound_children.hpp"
+#include "shapes/met_triangle.hpp"
 #include "union/patch_manifolds.hpp"
 
 namespace pd::detail {
@@ -36,6 +38,13 @@ struct UnionQuestion {
   }
 };
 
+/// The pieces that a point lies between: a child of the body a, and a child or triangle of the body b, or all of b.
+struct PointPieces {
+  const Child& of_a;
+  const Child* child_of_b = nullptr;
+  const MetTriangle* triangle = nullptr;
+};
+
 /// The search for the contacts of a pair's pieces, of one kind of union: triangles (mesh_contacts.hpp) or children
 /// (compound_contacts.hpp). It holds nothing but what it works with, so that one search serves all pairs of a thread:
 /// a search of each pair's own is 10 KB, and a thousand of them push each other out of the cache. What a pair remembers
@@ -51,9 +60,10 @@ class UnionContacts {
   /// @return false where a piece is not convex or has no exact form: Bullet's own algorithm answers for the pair then
   virtual bool find(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory,
                     Patches& patches) = 0;
-  /// Hands the patches to the manifolds, with the pieces found last as surroundings of their points. Requires: `find`
-  /// filled them.
-  virtual void replace(const UnionQuestion& question, Patches& patches, PatchManifolds& manifolds) = 0;
+  /// Returns the pieces that a point of the patches lies between, by its piece's number. Requires: `find` filled them.
+  [[nodiscard]] virtual PointPieces pieces_of(int piece) const = 0;
+  /// Takes note of the points that were chosen.
+  virtual void remember_chosen(const Patches& /*patches*/, PairMemory& /*memory*/) {}
 };
 
 /// Bullet's own algorithms hand the pieces their points one after the other; this one keeps four for each direction of
