@@ -18,7 +18,7 @@
 #include "pd/bullet/shape_conversion.hpp"
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/depth/scratch.hpp"
-#include "pieces/shared_edges.hpp"
+#include "union/shared_edges.hpp"
 #include "scenes/shape_families.hpp"
 
 namespace pd::test {

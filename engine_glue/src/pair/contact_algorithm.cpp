@@ -21,14 +21,10 @@
 #include "pieces/piece_wrapper.hpp"
 #include "shapes/cached_shape.hpp"
 #include "shapes/compound_children.hpp"
-#include "shapes/prefetch.hpp"
 
 namespace pd::detail {
 
 namespace {
-
-/// Of a certificate's state, what bodies at rest read.
-constexpr std::size_t kWarmBytesAtRest = 128;
 
 const btConvexShape& convex_shape(const btCollisionObjectWrapper* wrapper) {
   return *static_cast<const btConvexShape*>(wrapper->getCollisionShape());
@@ -42,14 +38,6 @@ btScalar reach_of_contacts(const btManifoldResult& result, const btPersistentMan
   const btScalar asked = result.m_closestPointDistanceThreshold;
   const bool spheres = a.getShapeType() == SPHERE_SHAPE_PROXYTYPE && b.getShapeType() == SPHERE_SHAPE_PROXYTYPE;
   return spheres && typeid(result) != typeid(btManifoldResult) ? asked : manifold.getContactBreakingThreshold() + asked;
-}
-
-/// What the query reads of a pair's memory: first of all, before bounding boxes are compared.
-void fetch_for_query(PairMemory& memory) {
-  for (const auto& shape : memory.shapes) {
-    if (shape) fetch(*shape);
-  }
-  if (memory.num_points > 0) fetch_bytes(&memory.warm.state(), kWarmBytesAtRest);
 }
 
 }  // namespace
@@ -74,7 +62,6 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
   // Pieces of unions have neighbours that may cover their contacts.
   const bool of_union = core.settings.unions_as_one && (is_piece(*a) || is_piece(*b));
   const bool boxes = !of_union && are_boxes(shape_a, shape_b);
-  if (memory != nullptr && !boxes) fetch_for_query(*memory);
 
   const btTransform& pose_a = a->getWorldTransform();
   const btTransform& pose_b = b->getWorldTransform();
@@ -92,7 +79,6 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
     manifold_.clear();
     return;
   }
-  fetch(manifold);
   if (core.closed()) {
     btGjkEpaPenetrationDepthSolver epa;
     process_by_bullet(epa, *a, *b, info, *result);

@@ -12,34 +12,24 @@ namespace {
 constexpr btScalar kHoldingShare = btScalar(0.998);
 
 /// Moves the point's local points back to the anchor, and its world point on A by the slip.
-void hold(btManifoldPoint& point, const FrictionAnchor& anchor, const ManifoldPoses& poses, btScalar threshold) {
-  Lanes normal, on_a, on_b, way_a, way_b;
-  load_lanes(point.m_normalWorldOnB, normal);
-  load_lanes(point.m_positionWorldOnA, on_a);
-  load_lanes(point.m_positionWorldOnB, on_b);
+void hold(btManifoldPoint& point, const FrictionAnchor& anchor, const btPersistentManifold& manifold) {
+  const btTransform& pose_a = manifold.getBody0()->getWorldTransform();
+  const btTransform& pose_b = manifold.getBody1()->getWorldTransform();
+  const btScalar threshold = manifold.getContactBreakingThreshold();
+  const btVector3& normal = point.m_normalWorldOnB;
   // From today's points to the anchor's material points where they are today.
-  poses.a.apply(anchor.local_a, way_a);
-  poses.b.apply(anchor.local_b, way_b);
-  way_a -= on_a;
-  way_b -= on_b;
-  const btScalar height_a = dot(way_a, normal), height_b = dot(way_b, normal);
-  const Lanes along_a = way_a - normal * height_a;
-  const Lanes along_b = way_b - normal * height_b;
-  const Lanes slip = along_a - along_b;
-  const btScalar reach = kReachShare * threshold;
-  const btScalar allowed = kSlipShare * threshold;
-  if (dot(along_a, along_a) > reach * reach || dot(along_b, along_b) > reach * reach ||
-      dot(slip, slip) > allowed * allowed) {
+  const btVector3 way_a = pose_a(anchor.local_a) - point.m_positionWorldOnA;
+  const btVector3 way_b = pose_b(anchor.local_b) - point.m_positionWorldOnB;
+  const btVector3 lift_a = normal * way_a.dot(normal), lift_b = normal * way_b.dot(normal);
+  const btVector3 along_a = way_a - lift_a, along_b = way_b - lift_b;
+  const btVector3 slip = along_a - along_b;
+  const btScalar reach = kReachShare * threshold, allowed = kSlipShare * threshold;
+  if (along_a.length2() > reach * reach || along_b.length2() > reach * reach || slip.length2() > allowed * allowed) {
     return;
   }
-  Lanes local_a, local_b, back_a, back_b;
-  load_lanes(anchor.local_a, local_a);
-  load_lanes(anchor.local_b, local_b);
-  poses.a.turn_back(normal * height_a, back_a);
-  poses.b.turn_back(normal * height_b, back_b);
-  point.m_localPointA = from_lanes(local_a - back_a);
-  point.m_localPointB = from_lanes(local_b - back_b);
-  point.m_positionWorldOnA = from_lanes(on_a + slip);
+  point.m_localPointA = anchor.local_a - lift_a * pose_a.getBasis();
+  point.m_localPointB = anchor.local_b - lift_b * pose_b.getBasis();
+  point.m_positionWorldOnA += slip;
   point.m_contactPointFlags |= BT_CONTACT_FLAG_FRICTION_ANCHOR;
 }
 
@@ -74,13 +64,13 @@ class OthersOutOfReach {
 };
 
 /// What the entry knew goes to the point that it holds now.
-void hand_on(btManifoldPoint& point, const FrictionAnchor& anchor, const ManifoldPoses& poses, btScalar threshold) {
+void hand_on(btManifoldPoint& point, const FrictionAnchor& anchor, const btPersistentManifold& manifold) {
   point.m_appliedImpulseLateral1 = anchor.lateral_impulse_1;
   point.m_appliedImpulseLateral2 = anchor.lateral_impulse_2;
   // A host's moving surface (contact motion) has to slide.
   const bool driven = point.m_contactMotion1 != 0 || point.m_contactMotion2 != 0;
   if (!anchor.slid && !driven) {
-    hold(point, anchor, poses, threshold);
+    hold(point, anchor, manifold);
   }
 }
 
@@ -111,10 +101,9 @@ FrictionAnchor anchor_of(const btManifoldPoint& point) {
           anchor_slid(point)};
 }
 
-int add_anchored_point(btManifoldResult& result, btPersistentManifold& manifold, const ManifoldPoses& poses,
-                       const FreshPoint& point, int entry, const FrictionAnchor& anchor) {
-  const btScalar threshold = manifold.getContactBreakingThreshold();
-  if (entry >= 0 && point.distance <= threshold) {
+int add_anchored_point(btManifoldResult& result, btPersistentManifold& manifold, const FreshPoint& point, int entry,
+                       const FrictionAnchor& anchor) {
+  if (entry >= 0 && point.distance <= manifold.getContactBreakingThreshold()) {
     // Bullet keeps the old point of a body that asks for anchors itself (CF_HAS_FRICTION_ANCHOR) unless it slid, with
     // last step's depth and normal. So the entry is made to look as if it had.
     btManifoldPoint& old = manifold.getContactPoint(entry);
@@ -132,7 +121,7 @@ int add_anchored_point(btManifoldResult& result, btPersistentManifold& manifold,
   if (entry < 0) {
     return -1;  // a contact test, or the point took the place of another one in a full manifold
   }
-  hand_on(manifold.getContactPoint(entry), anchor, poses, threshold);
+  hand_on(manifold.getContactPoint(entry), anchor, manifold);
   return entry;
 }
 

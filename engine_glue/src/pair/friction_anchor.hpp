@@ -15,7 +15,6 @@
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
 #include "pair/manifold_points.hpp"
-#include "shapes/lane_transform.hpp"
 
 namespace pd::detail {
 
@@ -50,8 +49,8 @@ struct FrictionAnchor {
 /// @param entry   where the point will go (`entry_near`); -1 for a new entry
 /// @param anchor  of that entry, before this step's points came; not read for a new entry
 /// @return the entry that holds the point now; -1 where `result` keeps its points elsewhere (contact tests)
-int add_anchored_point(btManifoldResult& result, btPersistentManifold& manifold, const ManifoldPoses& poses,
-                       const FreshPoint& point, int entry, const FrictionAnchor& anchor);
+int add_anchored_point(btManifoldResult& result, btPersistentManifold& manifold, const FreshPoint& point, int entry,
+                       const FrictionAnchor& anchor);
 
 /// Whether points of a manifold may be made without Bullet: its own result, no callback that is told of each point and
 /// may change it, and no body that asks for anchors itself.

@@ -103,25 +103,7 @@ bool order_by_feature(const PairMemory& memory, const FreshPoints& fresh, Lastin
   return taken + 1 == 1U << fresh.count;  // none twice
 }
 
-namespace {
-
-/// Of four new points.
-template <bool one>
-struct Normals;
-template <>
-struct Normals<true> {
-  const btVector3& all;
-  explicit Normals(const FreshPoint* const (&points)[4]) : all(points[0]->normal) {}
-};
-template <>
-struct Normals<false> {
-  FourVectors all;
-  explicit Normals(const FreshPoint* const (&points)[4])
-      : all(gather({&points[0]->normal, &points[1]->normal, &points[2]->normal, &points[3]->normal})) {}
-};
-
-template <bool one_piece>
-bool replace_lasting(const PointsOfStep& step, const LastingPoints& lasting, PlacesKnown known) {
+bool replace_lasting_points(const PointsOfStep& step, const LastingPoints& lasting, PlacesKnown known) {
   btPersistentManifold& manifold = step.manifold;
   PairMemory& memory = step.memory;
   const btManifoldResult& result = step.result;
@@ -137,8 +119,7 @@ bool replace_lasting(const PointsOfStep& step, const LastingPoints& lasting, Pla
   const FreshPoint* const points[4] = {&new_point(0), &new_point(1), &new_point(2), &new_point(3)};
   const FourVectors world_b =
       gather({&points[0]->point_on_b, &points[1]->point_on_b, &points[2]->point_on_b, &points[3]->point_on_b});
-  const Normals<one_piece> normals(points);
-  const auto& normal = normals.all;
+  const FourVectors normal = gather({&points[0]->normal, &points[1]->normal, &points[2]->normal, &points[3]->normal});
   const FourVectors world_a = world_b + scaled(normal, Lanes{points[0]->distance, points[1]->distance,
                                                              points[2]->distance, points[3]->distance});
   const FourVectors old_a = entries.gather(&btManifoldPoint::m_localPointA);
@@ -180,7 +161,7 @@ bool replace_lasting(const PointsOfStep& step, const LastingPoints& lasting, Pla
   for (int k = 0; k < count; ++k) {
     btManifoldPoint& point = *entries.at[static_cast<std::size_t>(k)];
     RememberedPoint& remembered = memory.points[lasting.entries[k]];
-    if constexpr (!one_piece) {
+    if (step.pieces != nullptr) {
       if (step.pieces->numbers(points[k]->piece, numbers)) set_numbers(numbers, manifold, result, pattern);
       if (!(points[k]->normal == pattern.m_normalWorldOnB)) turn_to(points[k]->normal, pattern);
     }
@@ -200,13 +181,6 @@ bool replace_lasting(const PointsOfStep& step, const LastingPoints& lasting, Pla
   }
   memory.seconds = step.seconds;
   return true;
-}
-
-}  // namespace
-
-bool replace_lasting_points(const PointsOfStep& step, const LastingPoints& lasting, PlacesKnown known) {
-  return step.pieces == nullptr ? replace_lasting<true>(step, lasting, known)
-                                : replace_lasting<false>(step, lasting, known);
 }
 
 }  // namespace pd::detail

@@ -9,6 +9,7 @@
 #include "pair/lasting_points.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "shapes/body_motion.hpp"
+#include "shapes/lane_vectors.hpp"
 
 namespace pd::detail {
 
@@ -100,17 +101,19 @@ void forget_parted(btPersistentManifold& manifold) {
   }
 }
 
-btVector3 local_on_a(const ManifoldPoses& poses, const FreshPoint& point) {
-  Lanes on_b, normal, local;
-  load_lanes(point.point_on_b, on_b);
-  load_lanes(point.normal, normal);
-  poses.a.apply_inverse(on_b + normal * point.distance, local);
-  return from_lanes(local);
-}
-
-ManifoldPoses poses_of(const btPersistentManifold& manifold) {
-  return {LaneTransform(manifold.getBody0()->getWorldTransform()),
-          LaneTransform(manifold.getBody1()->getWorldTransform())};
+/// The points on A, in its frame.
+std::array<btVector3, 4> local_on_a(const btTransform& pose_a, const FreshPoints& fresh) {
+  std::array<btVector3, 4> local;
+  if (fresh.count == 0) return local;
+  const auto point = [&](int k) -> const FreshPoint& { return fresh.points[k < fresh.count ? k : 0]; };
+  const FourVectors on_b =
+      gather({&point(0).point_on_b, &point(1).point_on_b, &point(2).point_on_b, &point(3).point_on_b});
+  const FourVectors normal = gather({&point(0).normal, &point(1).normal, &point(2).normal, &point(3).normal});
+  const Lanes distance{point(0).distance, point(1).distance, point(2).distance, point(3).distance};
+  Lanes out[4];
+  spread(apply_inverse(pose_a, on_b + scaled(normal, distance)), out);
+  for (int k = 0; k < 4; ++k) __builtin_memcpy(local[k].m_floats, &out[k], sizeof(Lanes));
+  return local;
 }
 
 FreshPoint fresh_point(const btVector3& normal, const ContactPoint& point) {
@@ -138,16 +141,16 @@ void add_points(btPersistentManifold& manifold, const FreshPoints& found, const 
   const Bounce bounce(manifold, result, seconds);
   FreshPoints fresh = found;
   if (bounce.possible()) bounce.leave_out(fresh);
-  const ManifoldPoses poses = poses_of(manifold);
+  const std::array<btVector3, 4> local_a = local_on_a(manifold.getBody0()->getWorldTransform(), fresh);
   // Points nearer to each other than the breaking threshold replace each other here: the deepest comes last.
   std::array<int, 4> order{0, 1, 2, 3};
   std::stable_sort(order.begin(), order.begin() + fresh.count,
                    [&](int i, int k) { return fresh.points[i].distance > fresh.points[k].distance; });
   for (int i = 0; i < fresh.count; ++i) {
     const FreshPoint& point = fresh.points[order[i]];
-    const int entry = entry_near(manifold, local_on_a(poses, point));
+    const int entry = entry_near(manifold, local_a[order[i]]);
     const FrictionAnchor anchor = entry >= 0 ? anchor_of(manifold.getContactPoint(entry)) : FrictionAnchor();
-    const int added = add_anchored_point(result, manifold, poses, point, entry, anchor);
+    const int added = add_anchored_point(result, manifold, point, entry, anchor);
     ImpulseTrend none;
     if (bounce.possible() && added >= 0) bounce.set(manifold.getContactPoint(added), none);
   }
@@ -177,7 +180,7 @@ void drop_parted(btPersistentManifold& manifold, PairMemory& memory, Matching& m
 /// on an old one, which keeps its contact callbacks right, as clearing would not; so the old point moves to the new
 /// one.
 /// @param entry  that goes on as the point, or -1
-void add_by_bullet(const PointsOfStep& step, const ManifoldPoses& poses, const FreshPoint& point, int entry,
+void add_by_bullet(const PointsOfStep& step, const FreshPoint& point, const btVector3& local_a, int entry,
                    bool same_step) {
   ImpulseTrend impulse;
   FrictionAnchor anchor;
@@ -186,9 +189,9 @@ void add_by_bullet(const PointsOfStep& step, const ManifoldPoses& poses, const F
     anchor = anchor_of(old);
     impulse = step.memory.points[entry].impulse;
     old.m_appliedImpulse = impulse.next(old.m_appliedImpulse, same_step);
-    old.m_localPointA = local_on_a(poses, point);
+    old.m_localPointA = local_a;
   }
-  entry = add_anchored_point(step.result, step.manifold, poses, point, entry, anchor);
+  entry = add_anchored_point(step.result, step.manifold, point, entry, anchor);
   if (entry < 0) return;
   step.memory.points[entry].feature_id = point.feature_id;
   step.memory.points[entry].impulse = impulse;
@@ -204,9 +207,7 @@ bool are_told_by_numbers(const PointsOfStep& step) {
 /// Whatever became of the old points.
 void replace_any_points(const PointsOfStep& step) {
   const auto& [manifold, memory, fresh, seconds, result, pieces] = step;
-  const ManifoldPoses poses = poses_of(manifold);
-  std::array<btVector3, 4> local_a;
-  for (int k = 0; k < fresh.count; ++k) local_a[k] = local_on_a(poses, fresh.points[k]);
+  const std::array<btVector3, 4> local_a = local_on_a(manifold.getBody0()->getWorldTransform(), fresh);
   Matching matching = match_points(manifold, memory, fresh, local_a);
   drop_parted(manifold, memory, matching);
   const bool same_step = seconds == memory.seconds;
@@ -227,7 +228,7 @@ void replace_any_points(const PointsOfStep& step) {
   for (int k = 0; k < fresh.count; ++k) {
     if (written[k]) continue;
     if (pieces != nullptr) pieces->enter(fresh.points[k].piece);
-    add_by_bullet(step, poses, fresh.points[k], entries[k], same_step);
+    add_by_bullet(step, fresh.points[k], local_a[k], entries[k], same_step);
     if (pieces != nullptr) pieces->leave();
   }
   memory.seconds = seconds;

@@ -10,7 +10,7 @@
 #include "pair/warm_up.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "pd/contact/time_of_impact.hpp"
-#include "shapes/lane_transform.hpp"
+#include "shapes/lane_vectors.hpp"
 
 namespace pd::detail {
 

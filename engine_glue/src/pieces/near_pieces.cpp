@@ -39,7 +39,6 @@ void NearPieces::know(const TrianglesAround& around, const btCollisionObjectWrap
   around_ = &around;
   around_pose_ = to_pd(mesh.getWorldTransform());
   around_margin_ = static_cast<double>(mesh.getCollisionShape()->getMargin());
-  known_edges_.begin(around.triangles());
   known_made_.assign(around.triangles().size(), false);
   if (known_.size() < known_made_.size()) known_.resize(known_made_.size());
 }
@@ -69,13 +68,9 @@ const UnionFrame& NearPieces::frame_of(const btCollisionObjectWrapper& piece, Bu
 const UnionPiece* NearPieces::known_triangle_of(const btCollisionObjectWrapper& piece) {
   const btCollisionObjectWrapper* parent = piece.m_parent;
   const bool of_mesh = parent != nullptr && parent->m_parent == nullptr && parent->getCollisionShape()->isConcave();
-  return of_mesh ? known_piece(piece) : nullptr;
-}
-
-UnionPiece* NearPieces::known_piece(const btCollisionObjectWrapper& triangle) {
-  if (around_ == nullptr || !around_->are_of(*triangle.m_parent->getCollisionShape())) return nullptr;
-  const auto& shape = static_cast<const btTriangleShape&>(*triangle.getCollisionShape());
-  const std::size_t i = around_->find(triangle.m_partId, triangle.m_index, shape.m_vertices1);
+  if (!of_mesh || around_ == nullptr || !around_->are_of(*parent->getCollisionShape())) return nullptr;
+  const auto& shape = static_cast<const btTriangleShape&>(*piece.getCollisionShape());
+  const std::size_t i = around_->find(piece.m_partId, piece.m_index, shape.m_vertices1);
   return i < around_->triangles().size() ? &known_triangle(i) : nullptr;
 }
 
@@ -142,13 +137,9 @@ void NearPieces::collect_known(const btCollisionObjectWrapper& except, Search& s
     if (triangle.part == except.m_partId && triangle.index == except.m_index) continue;
     const auto height = [&](int corner) { return n.dot(to_pd(triangle.corners[corner])); };
     if (std::max({height(0), height(1), height(2)}) + around_margin_ <= level) continue;
-    add_known(i, search.found);
+    const UnionPiece& piece = known_triangle(i);
+    if (!piece.planes.empty()) search.found.push_back(&piece);
   }
-}
-
-void NearPieces::add_known(std::size_t i, std::vector<const UnionPiece*>& found) {
-  const UnionPiece& piece = known_triangle(i);
-  if (!piece.planes.empty()) found.push_back(&piece);
 }
 
 UnionPiece& NearPieces::known_triangle(std::size_t i) {
@@ -158,42 +149,8 @@ UnionPiece& NearPieces::known_triangle(std::size_t i) {
     set_triangle({around_pose_.apply(to_pd(triangle.corners[0])), around_pose_.apply(to_pd(triangle.corners[1])),
                   around_pose_.apply(to_pd(triangle.corners[2]))},
                  around_margin_, known_[i]);
-    known_[i].around = static_cast<int>(i);
   }
   return known_[i];
-}
-
-bool NearPieces::neighbour_leads_on(const UnionPiece& triangle, const Vec3& foot, const Vec3& n, double sine,
-                                    double slack) {
-  if (triangle.around < 0) return false;
-  const auto place = static_cast<std::size_t>(triangle.around);
-  bool on_edge[3];
-  int num_edges = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double height = triangle.planes[2 + i].height(foot);
-    if (height > slack) return false;
-    on_edge[i] = height >= -slack;
-    if (on_edge[i]) ++num_edges;
-  }
-  if (num_edges == 0) return false;
-  const btVector3* const corners = around_->triangles()[place].corners;
-  const Vec3 normal = around_pose_.rotation().transpose() * n;
-  const Vec3 local = around_pose_.rotation().transpose() * (foot - around_pose_.translation());
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (!on_edge[i]) continue;
-    const btVector3* const across = known_edges_.across(place, i);
-    if (across == nullptr) continue;
-    // From each point of the edge the way to the corner across it leads through the other triangle.
-    const Vec3 to = to_pd(*across);
-    const Vec3 ends[2] = {to_pd(corners[i]), to_pd(corners[(i + 1) % 3])};
-    double rise = normal.dot(to - local);
-    if (num_edges == 1) rise = std::min({rise, normal.dot(to - ends[0]), normal.dot(to - ends[1])});
-    rise -= 2 * slack;
-    if (rise <= 2 * slack) continue;
-    const double longest = std::max((to - ends[0]).squaredNorm(), (to - ends[1]).squaredNorm());
-    if (rise * rise >= sine * sine * longest) return true;
-  }
-  return false;
 }
 
 void NearPieces::collect(const btCollisionShape& shape, const btTransform& pose, const btCollisionObjectWrapper* except,

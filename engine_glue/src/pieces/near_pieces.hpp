@@ -13,7 +13,6 @@
 #include "pd/union_contact/piece_surroundings.hpp"
 #include "pieces/compound_facts.hpp"
 #include "pieces/piece_wrapper.hpp"
-#include "pieces/shared_edges.hpp"
 #include "shapes/triangles_around.hpp"
 
 class btConvexShape;
@@ -46,13 +45,6 @@ class NearPieces {
   /// @param found  valid until `forget_made` or the next pair
   void find(const PieceInFrame& piece, const NearPoint& near, const Beyond* beyond, const StepShapes& shapes,
             std::vector<const UnionPiece*>& found);
-  /// Whether a triangle that shares an edge with this one, on which `foot` lies, leads on against n by a sine of `sine`
-  /// and more: from there and, unless foot is a corner, from all of the edge. No search; false may be either.
-  /// @param slack  up to which a point lies on an edge
-  [[nodiscard]] bool neighbour_leads_on(const UnionPiece& triangle, const Vec3& foot, const Vec3& n, double sine,
-                                        double slack);
-  /// Of the triangles that are known.
-  [[nodiscard]] SharedEdges& shared_edges() { return known_edges_; }
   [[nodiscard]] CompoundFacts& facts() { return facts_; }
 
   /// Makes room: what was found may go.
@@ -74,10 +66,6 @@ class NearPieces {
                      const btVector3& upper);
   /// The piece of one of them, which is made when it is first asked for.
   UnionPiece& known_triangle(std::size_t i);
-  /// Adds it, unless it has no planes.
-  void add_known(std::size_t i, std::vector<const UnionPiece*>& found);
-  /// Of this triangle, or null.
-  UnionPiece* known_piece(const btCollisionObjectWrapper& triangle);
   /// @param except  a piece of this shape, or null
   void collect(const btCollisionShape& shape, const btTransform& pose, const btCollisionObjectWrapper* except,
                Search& search);
@@ -100,7 +88,6 @@ class NearPieces {
   double around_margin_ = 0;
   std::deque<UnionPiece> known_;  ///< the triangles around the pair at hand
   std::vector<bool> known_made_;
-  SharedEdges known_edges_;
 };
 
 /// One piece by its wrapper.
@@ -123,9 +110,6 @@ class PieceOfBody final : public PieceSurroundings {
   }
   FacetCover cover_of(std::size_t facet, double slack) override {
     return frame_->is_world ? FacetCover::some : near_.facts().cover_of(child(), facet, slack, shapes_.cache);
-  }
-  bool neighbour_leads_on(const UnionPiece& own, const Vec3& foot, const Vec3& n, double sine, double slack) override {
-    return near_.neighbour_leads_on(own, foot, n, sine, slack);
   }
 
  private:

@@ -10,9 +10,12 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "shapes/lane_transform.hpp"
-
 namespace pd::detail {
+
+typedef btScalar Lanes __attribute__((vector_size(4 * sizeof(btScalar))));
+
+// By reference: lanes of double precision have no agreed way to be passed by value without AVX.
+inline void load_lanes(const btVector3& v, Lanes& out) { __builtin_memcpy(&out, v.m_floats, sizeof(Lanes)); }
 
 using LaneInteger = std::conditional_t<sizeof(btScalar) == sizeof(float), std::int32_t, std::int64_t>;
 /// Of comparisons: all bits of a lane, or none.
@@ -26,7 +29,6 @@ inline FourVectors operator+(const FourVectors& u, const FourVectors& v) { retur
 inline FourVectors operator-(const FourVectors& u, const FourVectors& v) { return {u.x - v.x, u.y - v.y, u.z - v.z}; }
 /// v s, a factor for each lane.
 inline FourVectors scaled(const FourVectors& v, const Lanes& s) { return {v.x * s, v.y * s, v.z * s}; }
-inline FourVectors scaled(const btVector3& v, const Lanes& s) { return {v.x() * s, v.y() * s, v.z() * s}; }
 inline void dot(const FourVectors& u, const FourVectors& v, Lanes& out) { out = u.x * v.x + u.y * v.y + u.z * v.z; }
 inline void dot(const FourVectors& u, const btVector3& v, Lanes& out) { out = u.x * v.x() + u.y * v.y() + u.z * v.z(); }
 inline FourVectors select(const LaneFlags& flags, const FourVectors& u, const FourVectors& v) {

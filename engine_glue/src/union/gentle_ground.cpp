@@ -45,11 +45,11 @@ bool GentleGround::begin(const PosedShape& body, const BodyReach& reach, const P
   return true;
 }
 
-bool GentleGround::is_gentle(const MeshTriangle& triangle, std::size_t place, double side, SharedEdges& edges) const {
+bool GentleGround::is_gentle(const MeshTriangle& triangle, std::size_t place, double side) {
   for (std::size_t i = 0; i < 3; ++i) {
     const btVector3& begin = triangle.corners[i];
     const btVector3& end = triangle.corners[i < 2 ? i + 1 : 0];
-    const btVector3* const corner = edges.across(place, i);
+    const btVector3* const corner = edges_.across(place, i);
     if (corner == nullptr) {
       // All triangles around the body were read: what shares an edge with one of these and was not is out of reach, and
       // so is the edge.
@@ -138,8 +138,7 @@ void GentleGround::cut_facet(const IndexList& loop, const Placed& triangle, cons
 }
 
 std::optional<Vec3> GentleGround::way_at(const Corner& nearest, const IndexList& loop, int facet,
-                                         const MeshTriangle& triangle, const Placed& placed, std::size_t place,
-                                         SharedEdges& edges) const {
+                                         const MeshTriangle& triangle, const Placed& placed, std::size_t place) {
   const auto number = static_cast<std::size_t>(nearest.of_triangle);
   switch (nearest.kind) {
     case Kind::corner_of_facet:
@@ -149,7 +148,7 @@ std::optional<Vec3> GentleGround::way_at(const Corner& nearest, const IndexList&
       const Vec3 local = mesh_.rotation().transpose() * n;
       const Vec3 from = to_pd(triangle.corners[number]);
       bool leads_on = false;
-      const bool all = edges.round_corner(place, number, [&](const btVector3& end) {
+      const bool all = edges_.round_corner(place, number, [&](const btVector3& end) {
         const Vec3 way = to_pd(end) - from;
         const double rise = local.dot(way);
         leads_on = rise > 0 && rise * rise > kDecided * kDecided * way.squaredNorm();
@@ -160,7 +159,7 @@ std::optional<Vec3> GentleGround::way_at(const Corner& nearest, const IndexList&
       return {};
     }
     case Kind::crossing: {
-      const btVector3* const across = edges.across(place, number);
+      const btVector3* const across = edges_.across(place, number);
       if (across == nullptr) return {};
       const auto begin = static_cast<std::size_t>(nearest.of_facet);
       const std::size_t end = begin + 1 < loop.size() ? begin + 1 : 0;
@@ -200,8 +199,7 @@ void GentleGround::add_points(const Placed& triangle, const Vec3& n) {
   }
 }
 
-bool GentleGround::ask_sphere(const MeshTriangle& triangle, const Placed& placed, std::size_t place,
-                              SharedEdges& edges) {
+bool GentleGround::ask_sphere(const MeshTriangle& triangle, const Placed& placed, std::size_t place) {
   // 1. The point of the triangle nearest to the centre: its foot, or one of the edges that it lies beyond.
   const Vec3& centre = vertices_[0];
   const Vec3 up = placed.side * placed.normal;
@@ -238,13 +236,13 @@ bool GentleGround::ask_sphere(const MeshTriangle& triangle, const Placed& placed
       return rise > 0 && rise * rise > kLevel * kLevel * way.squaredNorm();
     };
     if (along_edge > 0 && along_edge < 1) {
-      const btVector3* const across = edges.across(place, edge);
+      const btVector3* const across = edges_.across(place, edge);
       if (across == nullptr) return false;
       if (leads_on(triangle.corners[edge], *across)) return true;
     } else {
       const std::size_t number = along_edge > 0 ? (edge + 1) % 3 : edge;
       bool covered = false;
-      const bool all = edges.round_corner(place, number, [&](const btVector3& end) {
+      const bool all = edges_.round_corner(place, number, [&](const btVector3& end) {
         covered = leads_on(triangle.corners[number], end);
         return covered;
       });
@@ -261,7 +259,7 @@ bool GentleGround::ask_sphere(const MeshTriangle& triangle, const Placed& placed
   return true;
 }
 
-bool GentleGround::ask(const MeshTriangle& triangle, std::size_t place, SharedEdges& edges) {
+bool GentleGround::ask(const MeshTriangle& triangle, std::size_t place) {
   manifolds_.clear();
   // 1. How far the body is along the normal of the side where it is.
   Placed placed;
@@ -284,8 +282,8 @@ bool GentleGround::ask(const MeshTriangle& triangle, std::size_t place, SharedEd
   placed.distance = lowest - placed.level;
   if (placed.distance > threshold_) return true;
   if (-placed.distance > kShallow * (highest - lowest + 2 * margin_)) return false;
-  if (sphere_) return ask_sphere(triangle, placed, place, edges);
-  if (!is_gentle(triangle, place, placed.side, edges)) return false;
+  if (sphere_) return ask_sphere(triangle, placed, place);
+  if (!is_gentle(triangle, place, placed.side)) return false;
 
   // 2. The facet that faces it. One that has not the lowest corner is steep, as another one is.
   const int facet = facet_against(n);
@@ -301,7 +299,7 @@ bool GentleGround::ask(const MeshTriangle& triangle, std::size_t place, SharedEd
   const auto nearest = std::min_element(
       left.begin(), left.end(), [&](const Corner& x, const Corner& y) { return n.dot(x.point) < n.dot(y.point); });
   if (n.dot(nearest->point) - placed.level > threshold_) return true;
-  const std::optional<Vec3> way = way_at(*nearest, loop, facet, triangle, placed, place, edges);
+  const std::optional<Vec3> way = way_at(*nearest, loop, facet, triangle, placed, place);
   if (!way || way->dot(n) < kFacing) return false;
   if (*way != n) cut_facet(loop, placed, *way);
   add_points(placed, *way);

@@ -18,14 +18,17 @@
 #include <vector>
 
 #include "pd/contact/manifold.hpp"
-#include "pieces/shared_edges.hpp"
 #include "shapes/triangles_around.hpp"
+#include "union/shared_edges.hpp"
 
 namespace pd::detail {
 
 /// Of one body or child on one mesh. Keeps its memory, and nothing that an answer could depend on.
 class GentleGround {
  public:
+  /// Tells which triangles are around the bodies that are asked about next.
+  void know(std::span<const MeshTriangle> around) { edges_.begin(around); }
+
   /// @param body  what it is taken as, in the world
   /// @param reach  in the mesh's frame
   /// @param one_sided  the mesh has fronts only, where corners run counter-clockwise: who is behind one is not answered
@@ -34,9 +37,9 @@ class GentleGround {
              bool one_sided);
 
   /// Asks a triangle. Time O(v + f), and O(k) in the corners of the body's facet.
-  /// @param edges  of all triangles around, of which it is number `place`
+  /// @param place  its number among the triangles around
   /// @return false: it has to be asked as one by itself
-  bool ask(const MeshTriangle& triangle, std::size_t place, SharedEdges& edges);
+  bool ask(const MeshTriangle& triangle, std::size_t place);
 
   /// What was found last: up to four points at a time, all along one normal.
   [[nodiscard]] std::span<const ContactManifold> manifolds() const { return manifolds_; }
@@ -65,7 +68,7 @@ class GentleGround {
     double distance;  ///< of the body from there
   };
   /// Whether the mesh falls away beyond none of the edges that the body may reach by more than is gentle.
-  [[nodiscard]] bool is_gentle(const MeshTriangle& triangle, std::size_t place, double side, SharedEdges& edges) const;
+  [[nodiscard]] bool is_gentle(const MeshTriangle& triangle, std::size_t place, double side);
   /// The facet that faces against n, -1 where another one may meet what faces nearly as n.
   [[nodiscard]] int facet_against(const Vec3& n) const;
   /// What is left of the facet over the triangle, seen along n.
@@ -75,12 +78,12 @@ class GentleGround {
   void cut(const Vec3& outward, const Vec3& corner, std::int32_t edge);
   /// Which way contacts push where the facet is nearest to the triangle; none where that hangs on more than is known.
   [[nodiscard]] std::optional<Vec3> way_at(const Corner& nearest, const IndexList& loop, int facet,
-                                           const MeshTriangle& triangle, const Placed& placed, std::size_t place,
-                                           SharedEdges& edges) const;
+                                           const MeshTriangle& triangle, const Placed& placed, std::size_t place);
   /// The same of a sphere, which one point of the triangle is nearest to, however the mesh goes on.
-  bool ask_sphere(const MeshTriangle& triangle, const Placed& placed, std::size_t place, SharedEdges& edges);
+  bool ask_sphere(const MeshTriangle& triangle, const Placed& placed, std::size_t place);
   void add_points(const Placed& triangle, const Vec3& n);
 
+  SharedEdges edges_;
   const ConvexPolytope* polytope_ = nullptr;
   bool sphere_ = false;
   const BodyReach* reach_ = nullptr;

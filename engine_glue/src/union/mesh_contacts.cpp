@@ -169,6 +169,7 @@ void MeshContacts::read_mesh(const UnionQuestion& question, const btVector3& low
   const int skipped = buffers.around.read(mesh, lower, upper);
   if (skipped > 0) buffers.counters.skipped_triangles.add(skipped);
   buffers.near.know(buffers.around, question.b);
+  gentle_.know(buffers.around.triangles());
 }
 
 SolverCore::Outcome MeshContacts::ask(const btCollisionObjectWrapper& a, const btTransform& pose_a,
@@ -333,7 +334,7 @@ bool MeshContacts::find_on_gentle(const btCollisionObjectWrapper& a, const Union
                                   std::size_t triangle, SolverCore& core, ThreadBuffers& buffers, Patches& patches) {
   const std::size_t place = places_[triangle];
   if (!core.settings.one_sided_meshes && !is_on_its_side(question, triangle, buffers)) return false;
-  if (!gentle_.ask(buffers.around.triangles()[place], place, buffers.near.shared_edges())) return false;
+  if (!gentle_.ask(buffers.around.triangles()[place], place)) return false;
   buffers.counters.calls.add();
   buffers.counters.support_calls.add();
   const MetTriangle& met = triangles_[triangle];

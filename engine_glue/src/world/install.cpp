@@ -115,8 +115,8 @@ bool install(btCollisionWorld& world, BulletPenetrationDepthSolver& solver, Bull
   if (auto* dynamics = dynamic_cast<btDiscreteDynamicsWorld*>(&world)) {
     detail::Installation& installation = detail::Installation::of_world(solver.core(), dispatcher);
     take_tables(*dispatcher, &installation, contacts);
-    dynamics->removeAction(installation.step_action());  // of an earlier installation, if there was one
-    dynamics->addAction(installation.step_action());
+    dynamics->removeAction(&installation);  // of an earlier installation, if there was one
+    dynamics->addAction(&installation);
     solver.core().forget_lone(dispatcher);
   } else {
     install(*dispatcher, solver, contacts);
@@ -131,7 +131,7 @@ bool uninstall(btCollisionWorld& world, BulletPenetrationDepthSolver& solver) {
   detail::SolverCore& core = solver.core();
   bool installed = core.forget_lone(dispatcher);
   if (auto* dynamics = dynamic_cast<btDiscreteDynamicsWorld*>(&world); dynamics != nullptr && core.installed()) {
-    btActionInterface* const action = detail::Installation::of_world(core, dispatcher).step_action();
+    btActionInterface* const action = &detail::Installation::of_world(core, dispatcher);
     installed = ActionsOfWorld::has(*dynamics, action) || installed;
     dynamics->removeAction(action);
   }
@@ -147,7 +147,7 @@ bool install(btCollisionConfiguration& configuration, BulletPenetrationDepthSolv
   if (general == nullptr) {
     return false;
   }
-  general->m_pdSolver = detail::Installation::of(solver.core(), detail::InstalledIn::hosts_own_table).depth_solver();
+  general->m_pdSolver = &detail::Installation::of(solver.core(), detail::InstalledIn::hosts_own_table);
   return true;
 }
 

@@ -29,9 +29,7 @@ Installation::Installation(SolverCore& core, InstalledIn in)
       plane{{*this, {false}}, {*this, {true}}},
       compound(*this, {compound_contacts, false}),
       compound_query(*this, {}),
-      persistent(&depth_solver_),
-      depth_solver_(*this),
-      step_action_(*this) {}
+      persistent(this) {}
 
 Installation& Installation::of(SolverCore& core, InstalledIn in) {
   return at(core, in == InstalledIn::hosts_own_table ? kOfHosts : kOfDispatchers, in);
@@ -50,20 +48,16 @@ Installation& Installation::at(SolverCore& core, std::size_t place, InstalledIn 
   return static_cast<Installation&>(*world);  // no other kind is added
 }
 
-bool Installation::DepthSolver::calcPenDepth(btSimplexSolverInterface& simplex, const btConvexShape* a,
-                                             const btConvexShape* b, const btTransform& pose_a,
-                                             const btTransform& pose_b, btVector3& v, btVector3& witness_a,
-                                             btVector3& witness_b, btIDebugDraw* draw) {
-  return installation_.core().calc_pen_depth(installation_.stamp(), simplex, a, b, pose_a, pose_b, v, witness_a,
-                                             witness_b, draw);
+bool Installation::calcPenDepth(btSimplexSolverInterface& simplex, const btConvexShape* a, const btConvexShape* b,
+                                const btTransform& pose_a, const btTransform& pose_b, btVector3& v,
+                                btVector3& witness_a, btVector3& witness_b, btIDebugDraw* draw) {
+  return core().calc_pen_depth(stamp(), simplex, a, b, pose_a, pose_b, v, witness_a, witness_b, draw);
 }
 
-void Installation::StepAction::updateAction(btCollisionWorld* world, btScalar step) {
-  installation_.begin_step();
+void Installation::updateAction(btCollisionWorld* world, btScalar step) {
+  begin_step();
   // `install` adds the action to such worlds only.
-  if (!installation_.core().closed()) {
-    carry_heavy_loads(static_cast<btDiscreteDynamicsWorld&>(*world), installation_.core(), step);
-  }
+  if (!core().closed()) carry_heavy_loads(static_cast<btDiscreteDynamicsWorld&>(*world), core(), step);
 }
 
 }  // namespace pd::detail

@@ -14,7 +14,7 @@
 
 namespace pd::detail {
 
-class Installation final : public SolverInWorld {
+class Installation final : public SolverInWorld, public btConvexPenetrationDepthSolver, public btActionInterface {
  public:
   /// For the world of a dispatcher, which tells of its steps: one of a fixed number, in constant time.
   static Installation& of_world(SolverCore& core, const btCollisionDispatcher* dispatcher);
@@ -31,39 +31,18 @@ class Installation final : public SolverInWorld {
   CreateFuncOf<PlaneAlgorithm> plane[2];              ///< a convex body against a plane
   CreateFuncOf<UnionAlgorithm> compound;              ///< pairs with a compound, of compounds and convex bodies
   CreateFuncOf<CompoundQuery> compound_query;         ///< the same for the table of closest points
-  btConvexConvexAlgorithm::CreateFunc persistent;     ///< Bullet's, which asks `depth_solver`
+  btConvexConvexAlgorithm::CreateFunc persistent;     ///< Bullet's, which asks this depth solver
 
-  [[nodiscard]] btConvexPenetrationDepthSolver* depth_solver() { return &depth_solver_; }
-  /// Tells that a step has ended; for `btDynamicsWorld::addAction`.
-  [[nodiscard]] btActionInterface* step_action() { return &step_action_; }
+  /// Asks the core with this world's stamp.
+  bool calcPenDepth(btSimplexSolverInterface& simplex, const btConvexShape* a, const btConvexShape* b,
+                    const btTransform& pose_a, const btTransform& pose_b, btVector3& v, btVector3& witness_a,
+                    btVector3& witness_b, btIDebugDraw* draw) override;
+  /// A step has ended.
+  void updateAction(btCollisionWorld* world, btScalar step) override;
+  void debugDraw(btIDebugDraw*) override {}
 
  private:
-  /// Asks the core with this world's stamp.
-  class DepthSolver final : public btConvexPenetrationDepthSolver {
-   public:
-    explicit DepthSolver(const Installation& installation) : installation_(installation) {}
-    bool calcPenDepth(btSimplexSolverInterface& simplex, const btConvexShape* a, const btConvexShape* b,
-                      const btTransform& pose_a, const btTransform& pose_b, btVector3& v, btVector3& witness_a,
-                      btVector3& witness_b, btIDebugDraw* draw) override;
-
-   private:
-    const Installation& installation_;
-  };
-
-  class StepAction final : public btActionInterface {
-   public:
-    explicit StepAction(Installation& installation) : installation_(installation) {}
-    void updateAction(btCollisionWorld* world, btScalar step) override;
-    void debugDraw(btIDebugDraw*) override {}
-
-   private:
-    Installation& installation_;
-  };
-
   static Installation& at(SolverCore& core, std::size_t place, InstalledIn in);
-
-  DepthSolver depth_solver_;
-  StepAction step_action_;
 };
 
 }  // namespace pd::detail

@@ -49,10 +49,6 @@ double Cover::covered(Vec3 foot, const Vec3& n) {
   return least;
 }
 
-bool Cover::led_on_by_neighbour(const Vec3& foot, const Vec3& n) const {
-  return around_.neighbour_leads_on(*buffers_.own, foot, n, kLedOn, 2 * slack_);
-}
-
 FacetCover Cover::cover_of(std::size_t facet) const { return around_.cover_of(facet, 4 * slack_); }
 
 double Cover::most_covered(const Vec3& point, const Vec3& n, double enough) {

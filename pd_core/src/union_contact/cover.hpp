@@ -14,9 +14,6 @@
 
 namespace pd::detail {
 
-/// A sine that is more than kDecided also where it was found another way.
-inline constexpr double kLedOn = (1 + 1e-6) * kDecided;
-
 /// A normal nearer to a facet's than this (1 - cosine, about 1e-5 rad) is that facet's.
 inline constexpr double kSameNormal = 1e-10;
 
@@ -69,9 +66,6 @@ class Cover {
 
   /// True if a point of the piece's facet n lies in no other piece, nor on the surface of one.
   [[nodiscard]] bool lies_free(const Vec3& foot, const Vec3& n) { return most_covered(foot, n, kBeyondDoubt) < 0; }
-
-  /// Whether the feature of the triangle at hand at `foot` is covered beyond doubt by the triangle next to it.
-  [[nodiscard]] bool led_on_by_neighbour(const Vec3& foot, const Vec3& n) const;
 
   /// What other pieces cover of all of the piece's facet, and so of every part of it; `some` where that is not known.
   [[nodiscard]] FacetCover cover_of(std::size_t facet) const;

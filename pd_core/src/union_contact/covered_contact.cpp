@@ -104,7 +104,6 @@ class SideRule {
     if (own.flat) {
       const double own_sine = covered_sine(own, foot, n, slack_, kBeyondDoubt, buffers_.active);
       if (own_sine > kDecided) return own_sine;
-      if (cover_.led_on_by_neighbour(foot, n)) return kLedOn;
       cover_.look_round(foot, n);
     }
     return cover_.covered(foot, n);

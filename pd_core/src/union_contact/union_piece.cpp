@@ -75,7 +75,6 @@ void set_triangle(const std::array<Vec3, 3>& corners, double margin, UnionPiece&
   piece.planes.clear();
   piece.margin = margin;
   piece.flat = true;
-  piece.around = -1;
   const Vec3 across = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
   const double twice_area = across.norm();
   // Also refuses what is not a number.
@@ -94,7 +93,6 @@ void set_solid(const ConvexShape& shape, const Pose& pose, UnionPiece& piece) {
   piece.planes.clear();
   piece.margin = shape.margin();
   piece.flat = false;
-  piece.around = -1;
   const ConvexPolytope* polytope = shape.polytope();
   if (polytope == nullptr || polytope->affine_dimension() != 3) return;
   Vec3 sum = Vec3::Zero();

@@ -69,13 +69,6 @@ class PieceSurroundings {
 
   /// How much the other pieces cover of all of the piece's facet, and so of every part of it.
   [[nodiscard]] virtual FacetCover cover_of(std::size_t /*facet*/, double /*slack*/) { return FacetCover::some; }
-
-  /// Tells whether a triangle that shares an edge with this one, on which `foot` lies, leads on against n by a sine of
-  /// `sine` and more. False costs a search.
-  [[nodiscard]] virtual bool neighbour_leads_on(const UnionPiece& /*own*/, const Vec3& /*foot*/, const Vec3& /*n*/,
-                                                double /*sine*/, double /*slack*/) {
-    return false;
-  }
 };
 
 }  // namespace pd

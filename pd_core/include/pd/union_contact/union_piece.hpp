@@ -28,7 +28,6 @@ struct UnionPiece {
   Vec3 middle = Vec3::Zero();      ///< of its corners
   double margin = 0;
   bool flat = false;  ///< a triangle: its first two planes are its two sides, the others its edges, corner to next
-  int around = -1;    ///< its place among the triangles around a body; -1: none of them
 };
 
 /// A way that leads less than this (as a sine) against a normal covers nothing: a contact that is off by so much gives

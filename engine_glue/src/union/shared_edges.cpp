@@ -1,4 +1,4 @@
-#include "pieces/shared_edges.hpp"
+#include "union/shared_edges.hpp"
 
 #include <bit>
 #include <type_traits>
