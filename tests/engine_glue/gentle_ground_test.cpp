@@ -1,16 +1,12 @@
 /// @file
 /// Gentle triangles, answered without queries: the nearest triangle of all, which nothing covers, says what a query
-/// says, and which triangles share an edge or a corner is found whatever their order and direction.
-#include "union/gentle_ground.hpp"
-
+/// says.
 #include <BulletCollision/CollisionShapes/btTriangleShape.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
-#include <set>
 #include <vector>
 
 #include "engine_glue/union_worlds.hpp"
@@ -18,7 +14,6 @@
 #include "pd/bullet/shape_conversion.hpp"
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/depth/scratch.hpp"
-#include "union/shared_edges.hpp"
 #include "scenes/shape_families.hpp"
 
 namespace pd::test {
@@ -117,42 +112,6 @@ TEST(GentleGround, ASteepEdgeIsAskedByQueries) {
       EXPECT_EQ(world.solver.statistics().warm > 0, slope > .3) << slope << ' ' << cell;
       EXPECT_NEAR(world.bullet.least_distance(), .001, 1e-6) << slope << ' ' << cell;
     }
-  }
-}
-
-detail::MeshTriangle triangle_of(const btVector3& a, const btVector3& b, const btVector3& c) {
-  return {{a, b, c}, {}, {}, Vec3::Zero(), 0, 0};
-}
-
-TEST(SharedEdges, GoRoundACornerWhicheverWayTrianglesRun) {
-  const auto rim = [](int i) {
-    const double turn = std::numbers::pi / 3 * i;
-    return btVector3(static_cast<btScalar>(std::cos(turn)), 0, static_cast<btScalar>(std::sin(turn)));
-  };
-  const btVector3 centre(0, 1, 0);
-  for (const int left_out : {-1, 2}) {
-    std::vector<detail::MeshTriangle> fan;
-    for (int i = 0; i < 6; ++i) {
-      const btVector3 here = rim(i), next = i < 5 ? rim(i + 1) : rim(0);
-      if (i == left_out) continue;
-      // Every other one turned and begun elsewhere.
-      fan.push_back(i % 2 == 0 ? triangle_of(centre, here, next) : triangle_of(here, centre, next));
-    }
-    detail::SharedEdges edges;
-    edges.begin(fan);
-    std::set<btScalar> seen;
-    const bool all = edges.round_corner(0, 0, [&](const btVector3& end) {
-      seen.insert(end.x() + 3 * end.z());
-      return false;
-    });
-    EXPECT_EQ(all, left_out < 0);
-    if (all) {
-      EXPECT_EQ(seen.size(), 6U);
-    }
-    const btVector3* const across = edges.across(0, 0);
-    ASSERT_NE(across, nullptr);
-    EXPECT_EQ((*across - rim(5)).length(), 0);
-    EXPECT_EQ(edges.across(0, 1), nullptr);
   }
 }
 

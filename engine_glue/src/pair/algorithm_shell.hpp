@@ -23,8 +23,9 @@ class AlgorithmShell : public btActivatingCollisionAlgorithm {
   using btActivatingCollisionAlgorithm::btActivatingCollisionAlgorithm;
 };
 
-/// Makes algorithms of one class. `Algorithm::Kind` is the rest of what its constructor takes and says by
-/// `takes(world, a, b)` whether the pair is ours, and from which table Bullet's own algorithm comes where it is not.
+/// Makes algorithms of one class for pairs that the host leaves to us. `Algorithm::Kind` is the rest of what its
+/// constructor takes. It says from which table Bullet's own algorithm comes where a pair is not ours, and it may
+/// decline pairs by `takes(world, a, b)`.
 template <class Algorithm>
 struct CreateFuncOf final : public btCollisionAlgorithmCreateFunc {
   CreateFuncOf(const SolverInWorld& w, const typename Algorithm::Kind& k) : world(w), kind(k) {}
@@ -33,7 +34,9 @@ struct CreateFuncOf final : public btCollisionAlgorithmCreateFunc {
                                                  const btCollisionObjectWrapper* b) override {
     // Bullet's pool gives out pieces of a fixed size and checks it by assertion only.
     static_assert(sizeof(Algorithm) <= sizeof(btConvexConvexAlgorithm));
-    if (!kind.takes(world, *a, *b)) return world.bullets_algorithm(info, a, b, kind.table);
+    bool ours = world.takes(*a, *b);
+    if constexpr (requires { kind.takes(world, *a, *b); }) ours = ours && kind.takes(world, *a, *b);
+    if (!ours) return world.bullets_algorithm(info, a, b, kind.table);
     void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(Algorithm));
     return new (memory) Algorithm(info, a, b, world, kind);
   }

@@ -14,10 +14,6 @@ class ContactAlgorithm final : public AlgorithmShell {
  public:
   struct Kind {
     ContactTable table;  ///< of the dispatcher, in which the algorithm stands
-    [[nodiscard]] static bool takes(const SolverInWorld& world, const btCollisionObjectWrapper& a,
-                                    const btCollisionObjectWrapper& b) {
-      return world.installed_in() == InstalledIn::hosts_own_table || world.takes(a, b);
-    }
   };
   ContactAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
                    const btCollisionObjectWrapper* b, const SolverInWorld& world, Kind kind);

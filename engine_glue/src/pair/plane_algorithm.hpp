@@ -17,10 +17,6 @@ class PlaneAlgorithm final : public AlgorithmShell {
   struct Kind {
     bool swapped;  ///< a is the plane
     static constexpr ContactTable table = ContactTable::contacts;
-    [[nodiscard]] static bool takes(const SolverInWorld& world, const btCollisionObjectWrapper& a,
-                                    const btCollisionObjectWrapper& b) {
-      return world.takes(a, b);
-    }
   };
   PlaneAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
                  const btCollisionObjectWrapper* b, const SolverInWorld& world, Kind kind);

@@ -15,24 +15,16 @@ namespace pd::detail {
 /// Which of a dispatcher's two tables of algorithms a pair comes from.
 enum class ContactTable : std::uint8_t { contacts, closest_points };
 
-/// Whose create functions there are.
-enum class InstalledIn : std::uint8_t {
-  hosts_own_table,  ///< a host registers them itself: all pairs are taken
-  dispatchers,      ///< of dispatchers whose worlds do not tell when a step has ended
-  stepping_worlds   ///< of worlds that do
-};
-
 /// Never moves and, once a dispatcher knows it, never dies: see SolverCore. Bullet tells nobody when a dispatcher dies,
 /// so nothing is kept here of those that are served.
 class SolverInWorld {
  public:
-  SolverInWorld(SolverCore& core, InstalledIn in) : core_(core), in_(in) {}
+  explicit SolverInWorld(SolverCore& core) : core_(core) {}
   virtual ~SolverInWorld() = default;
   SolverInWorld(const SolverInWorld&) = delete;
   SolverInWorld& operator=(const SolverInWorld&) = delete;
 
   [[nodiscard]] SolverCore& core() const { return core_; }
-  [[nodiscard]] InstalledIn installed_in() const { return in_; }
   /// Of the present step; 0 until a world has made its first step. Where worlds share this, a step of one of them ends
   /// the stamp of all: shapes are compared more often than needed then, and never less.
   [[nodiscard]] std::uint64_t stamp() const { return stamp_.load(std::memory_order_relaxed); }
@@ -51,7 +43,6 @@ class SolverInWorld {
 
  private:
   SolverCore& core_;
-  InstalledIn in_;
   std::atomic<std::uint64_t> stamp_{0};
 };
 

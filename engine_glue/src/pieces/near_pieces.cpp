@@ -133,10 +133,10 @@ void NearPieces::collect_known(const btCollisionObjectWrapper& except, Search& s
   }
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const MeshTriangle& triangle = triangles[i];
+    const std::array<Vec3, 3>& corners = around_->corners()[i];
     if (!boxes_meet(triangle.lower, triangle.upper, lower, upper)) continue;
     if (triangle.part == except.m_partId && triangle.index == except.m_index) continue;
-    const auto height = [&](int corner) { return n.dot(to_pd(triangle.corners[corner])); };
-    if (std::max({height(0), height(1), height(2)}) + around_margin_ <= level) continue;
+    if (std::max({n.dot(corners[0]), n.dot(corners[1]), n.dot(corners[2])}) + around_margin_ <= level) continue;
     const UnionPiece& piece = known_triangle(i);
     if (!piece.planes.empty()) search.found.push_back(&piece);
   }
@@ -145,9 +145,8 @@ void NearPieces::collect_known(const btCollisionObjectWrapper& except, Search& s
 UnionPiece& NearPieces::known_triangle(std::size_t i) {
   if (!known_made_[i]) {
     known_made_[i] = true;
-    const MeshTriangle& triangle = around_->triangles()[i];
-    set_triangle({around_pose_.apply(to_pd(triangle.corners[0])), around_pose_.apply(to_pd(triangle.corners[1])),
-                  around_pose_.apply(to_pd(triangle.corners[2]))},
+    const std::array<Vec3, 3>& corners = around_->corners()[i];
+    set_triangle({around_pose_.apply(corners[0]), around_pose_.apply(corners[1]), around_pose_.apply(corners[2])},
                  around_margin_, known_[i]);
   }
   return known_[i];

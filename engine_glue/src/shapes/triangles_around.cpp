@@ -68,7 +68,11 @@ int TrianglesAround::read(const btConcaveShape& mesh, const btVector3& lower, co
     return x.first != y.first ? x.first < y.first : comes_before(read_[x.second], read_[y.second]);
   });
   triangles_.clear();
-  for (const auto& [number, i] : order_) triangles_.push_back(read_[i]);
+  corners_.clear();
+  for (const auto& [number, i] : order_) {
+    const MeshTriangle& triangle = triangles_.emplace_back(read_[i]);
+    corners_.push_back({to_pd(triangle.corners[0]), to_pd(triangle.corners[1]), to_pd(triangle.corners[2])});
+  }
   return skipped;
 }
 

@@ -60,6 +60,8 @@ class TrianglesAround {
 
   /// By Bullet's numbers, so that their order does not depend on the mesh's tree.
   [[nodiscard]] std::span<const MeshTriangle> triangles() const { return triangles_; }
+  /// The corners of the same triangles as the core takes them.
+  [[nodiscard]] std::span<const std::array<Vec3, 3>> corners() const { return corners_; }
   [[nodiscard]] bool are_of(const btCollisionShape& mesh) const { return mesh_ == &mesh; }
   /// The place of one of them, or their number. Time O(log k), where a host gives each a number of its own.
   [[nodiscard]] std::size_t find(int part, int index, const btVector3* corners) const;
@@ -71,6 +73,7 @@ class TrianglesAround {
   btVector3 lower_;
   btVector3 upper_;
   std::vector<MeshTriangle> triangles_;
+  std::vector<std::array<Vec3, 3>> corners_;
   std::vector<MeshTriangle> read_;                            ///< in the order of the mesh's tree
   std::vector<std::pair<std::uint64_t, std::size_t>> order_;  ///< by Bullet's numbers
 };

@@ -13,9 +13,9 @@ class CompoundQuery final : public AlgorithmShell {
  public:
   struct Kind {
     static constexpr ContactTable table = ContactTable::closest_points;
-    [[nodiscard]] static bool takes(const SolverInWorld& world, const btCollisionObjectWrapper& a,
-                                    const btCollisionObjectWrapper& b) {
-      return world.takes(a, b) && world.core().settings.unions_as_one;
+    [[nodiscard]] static bool takes(const SolverInWorld& world, const btCollisionObjectWrapper&,
+                                    const btCollisionObjectWrapper&) {
+      return world.core().settings.unions_as_one;
     }
   };
   CompoundQuery(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,

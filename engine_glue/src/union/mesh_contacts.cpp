@@ -13,6 +13,7 @@
 
 #include "pair/solver_core.hpp"
 #include "pd/bullet/scalar.hpp"
+#include "pd/union_contact/gentle_ground.hpp"
 #include "pd/union_contact/one_sided.hpp"
 #include "pd/union_contact/piece_memories.hpp"
 #include "pieces/compound_facts.hpp"
@@ -21,7 +22,6 @@
 #include "shapes/moving_body.hpp"
 #include "shapes/triangles_around.hpp"
 #include "union/child_on_ground.hpp"
-#include "union/gentle_ground.hpp"
 #include "union/pieces_in_result.hpp"
 #include "union/sheet_sides.hpp"
 #include "union/step_leap.hpp"
@@ -122,13 +122,6 @@ class MeshContacts final : public UnionContacts {
   SheetSides sides_;
 };
 
-/// The side from which the corners run counter-clockwise (unit, in the world). Requires an area.
-Vec3 front_of(const MetTriangle& triangle, const btTransform& pose) {
-  const Vec3 across = (to_pd(triangle.corners[1]) - to_pd(triangle.corners[0]))
-                          .cross(to_pd(triangle.corners[2]) - to_pd(triangle.corners[0]));
-  return (to_pd(pose).rotation() * across).normalized();
-}
-
 void MeshContacts::reach_out(const UnionQuestion& question) {
   const btTransform into_mesh = question.b.getWorldTransform().inverse();
   const btScalar reach = question.b.getCollisionShape()->getMargin() + question.threshold;
@@ -169,7 +162,7 @@ void MeshContacts::read_mesh(const UnionQuestion& question, const btVector3& low
   const int skipped = buffers.around.read(mesh, lower, upper);
   if (skipped > 0) buffers.counters.skipped_triangles.add(skipped);
   buffers.near.know(buffers.around, question.b);
-  gentle_.know(buffers.around.triangles());
+  gentle_.know(buffers.around.corners());
 }
 
 SolverCore::Outcome MeshContacts::ask(const btCollisionObjectWrapper& a, const btTransform& pose_a,
@@ -314,9 +307,14 @@ bool MeshContacts::begin_gentle(const btCollisionObjectWrapper& a, const UnionQu
   StepShapes{core.cache, question.stamp}.refresh(static_cast<const btConvexShape&>(*a.getCollisionShape()), shape);
   if (!shape->body) return false;
   body_ = {(is_part(a) && shape->sharp ? shape->sharp : shape->body).get(), to_pd(pose)};
-  return gentle_.begin(body_, reaches_[static_cast<std::size_t>(place)], to_pd(question.b.getWorldTransform()),
-                       static_cast<double>(question.b.getCollisionShape()->getMargin()),
-                       static_cast<double>(question.threshold), core.settings.one_sided_meshes);
+  const BodyReach& reach = reaches_[static_cast<std::size_t>(place)];
+  return gentle_.begin(body_,
+                       {.mesh = to_pd(question.b.getWorldTransform()),
+                        .margin = static_cast<double>(question.b.getCollisionShape()->getMargin()),
+                        .lower = to_pd(reach.lower()),
+                        .upper = to_pd(reach.upper()),
+                        .one_sided = core.settings.one_sided_meshes},
+                       static_cast<double>(question.threshold));
 }
 
 bool MeshContacts::is_on_its_side(const UnionQuestion& question, std::size_t triangle, ThreadBuffers& buffers) const {
@@ -334,7 +332,7 @@ bool MeshContacts::find_on_gentle(const btCollisionObjectWrapper& a, const Union
                                   std::size_t triangle, SolverCore& core, ThreadBuffers& buffers, Patches& patches) {
   const std::size_t place = places_[triangle];
   if (!core.settings.one_sided_meshes && !is_on_its_side(question, triangle, buffers)) return false;
-  if (!gentle_.ask(buffers.around.triangles()[place], place)) return false;
+  if (!gentle_.ask(place)) return false;
   buffers.counters.calls.add();
   buffers.counters.support_calls.add();
   const MetTriangle& met = triangles_[triangle];
@@ -428,10 +426,11 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore&
     if (outcome == SolverCore::Outcome::unsupported) return false;
     if (outcome != SolverCore::Outcome::answered) continue;
     if (remembered != nullptr) remembered->met = answer.depth.signed_distance() <= threshold;
-    const Vec3 front = one_sided ? front_of(met, pose) : Vec3(Vec3::Zero());
+    const MeshTriangle& near = buffers.around.triangles()[places_[i]];
+    // The side from which the corners run counter-clockwise.
+    const Vec3 front = one_sided ? Vec3((to_pd(pose).rotation() * near.across).normalized()) : Vec3(Vec3::Zero());
     if (one_sided && !one_sided_.admit(answer.depth, front, static_cast<int>(i))) continue;
     if (!one_sided) {
-      const MeshTriangle& near = buffers.around.triangles()[places_[i]];
       const Vec3 back = sides_.judge(met, near.across.normalized(), met_of_child, answer);
       if (!back.isZero()) {
         one_sided_.add_behind(static_cast<int>(i), back);

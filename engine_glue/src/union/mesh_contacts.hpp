@@ -2,8 +2,6 @@
 /// The contacts of a convex body, or of the convex children of a compound, with the triangles of a mesh or heightfield.
 #pragma once
 
-#include <BulletCollision/CollisionShapes/btCollisionShape.h>
-
 #include <memory>
 
 #include "union/union_algorithm.hpp"
@@ -18,7 +16,5 @@ namespace pd::detail {
 
 /// Whether meshes of this Bullet type are taken: those that are triangles and nothing else.
 [[nodiscard]] bool takes_mesh(int proxy_type);
-/// True if a shape is a signed distance field. Its type is that of the host's own meshes, and it has no triangles.
-[[nodiscard]] bool is_distance_field(const btCollisionShape& shape);
 
 }  // namespace pd::detail

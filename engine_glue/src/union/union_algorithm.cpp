@@ -10,7 +10,6 @@
 #include "pair/bullets_stand_in.hpp"
 #include "pair/solver_core.hpp"
 #include "union/flat_wrapper.hpp"
-#include "union/mesh_contacts.hpp"
 #include "union/pieces_in_result.hpp"
 
 namespace pd::detail {
@@ -150,12 +149,6 @@ UnionSearch* UnionAlgorithm::State::find(const UnionQuestion& question, ThreadBu
   found_->pose_b = pose_b;
   found_->memory = memory;
   return &search;
-}
-
-bool UnionAlgorithm::Kind::takes(const SolverInWorld& world, const btCollisionObjectWrapper& a,
-                                 const btCollisionObjectWrapper& b) {
-  const bool field = is_distance_field(*a.getCollisionShape()) || is_distance_field(*b.getCollisionShape());
-  return !field && world.takes(a, b) && world.core().settings.unions_as_one;
 }
 
 UnionAlgorithm::UnionAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,

@@ -2,6 +2,8 @@
 /// The contact algorithm of pairs with a mesh, heightfield or compound: the points of all pieces, chosen together.
 #pragma once
 
+#include <BulletCollision/CollisionShapes/btCollisionShape.h>
+
 #include <cstdint>
 #include <memory>
 
@@ -66,6 +68,9 @@ class UnionContacts {
   virtual void remember_chosen(const Patches& /*patches*/, PairMemory& /*memory*/) {}
 };
 
+/// True if a shape is a signed distance field. Its type is that of the host's own meshes, and it has no triangles.
+[[nodiscard]] bool is_distance_field(const btCollisionShape& shape);
+
 /// Bullet's own algorithms hand the pieces their points one after the other; this one keeps four for each direction of
 /// the whole pair (patches.hpp).
 class UnionAlgorithm final : public AlgorithmShell {
@@ -75,7 +80,10 @@ class UnionAlgorithm final : public AlgorithmShell {
     bool swapped;  ///< b is asked as the question's a
     static constexpr ContactTable table = ContactTable::contacts;
     [[nodiscard]] static bool takes(const SolverInWorld& world, const btCollisionObjectWrapper& a,
-                                    const btCollisionObjectWrapper& b);
+                                    const btCollisionObjectWrapper& b) {
+      const bool field = is_distance_field(*a.getCollisionShape()) || is_distance_field(*b.getCollisionShape());
+      return !field && world.core().settings.unions_as_one;
+    }
   };
   UnionAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
                  const btCollisionObjectWrapper* b, const SolverInWorld& world, const Kind& kind);

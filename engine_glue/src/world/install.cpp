@@ -105,7 +105,7 @@ class ActionsOfWorld : private btDiscreteDynamicsWorld {
 
 void install(btCollisionDispatcher& dispatcher, BulletPenetrationDepthSolver& solver, BulletContacts contacts) {
   detail::SolverCore& core = solver.core();
-  take_tables(dispatcher, &detail::Installation::of(core, detail::InstalledIn::dispatchers), contacts);
+  take_tables(dispatcher, &detail::Installation::of_others(core), contacts);
   core.note_lone(&dispatcher);
 }
 
@@ -147,7 +147,7 @@ bool install(btCollisionConfiguration& configuration, BulletPenetrationDepthSolv
   if (general == nullptr) {
     return false;
   }
-  general->m_pdSolver = &detail::Installation::of(solver.core(), detail::InstalledIn::hosts_own_table);
+  general->m_pdSolver = &detail::Installation::of_others(solver.core());
   return true;
 }
 

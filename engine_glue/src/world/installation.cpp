@@ -16,12 +16,12 @@ namespace pd::detail {
 namespace {
 
 /// Places of installations in the core.
-constexpr std::size_t kOfHosts = 0, kOfDispatchers = 1, kOfWorlds = 2;
+constexpr std::size_t kOfOthers = 0, kOfWorlds = 1;
 
 }  // namespace
 
-Installation::Installation(SolverCore& core, InstalledIn in)
-    : SolverInWorld(core, in),
+Installation::Installation(SolverCore& core)
+    : SolverInWorld(core),
       contacts(*this, {ContactTable::contacts}),
       closest(*this, {ContactTable::closest_points}),
       mesh{{*this, {mesh_contacts, false}}, {*this, {mesh_contacts, true}}},
@@ -31,20 +31,18 @@ Installation::Installation(SolverCore& core, InstalledIn in)
       compound_query(*this, {}),
       persistent(this) {}
 
-Installation& Installation::of(SolverCore& core, InstalledIn in) {
-  return at(core, in == InstalledIn::hosts_own_table ? kOfHosts : kOfDispatchers, in);
-}
+Installation& Installation::of_others(SolverCore& core) { return at(core, kOfOthers); }
 
 Installation& Installation::of_world(SolverCore& core, const btCollisionDispatcher* dispatcher) {
   // The dispatchers of worlds that live at the same time lie at different addresses.
   const auto address = static_cast<std::uint64_t>(std::bit_cast<std::uintptr_t>(dispatcher));
   const std::uint64_t mixed = (address * 0x9E3779B97F4A7C15ULL) >> 32U;
-  return at(core, kOfWorlds + mixed % (SolverCore::kWorlds - kOfWorlds), InstalledIn::stepping_worlds);
+  return at(core, kOfWorlds + mixed % (SolverCore::kWorlds - kOfWorlds));
 }
 
-Installation& Installation::at(SolverCore& core, std::size_t place, InstalledIn in) {
+Installation& Installation::at(SolverCore& core, std::size_t place) {
   SolverInWorld* world = core.world_at(place);
-  if (world == nullptr) world = &core.add_world(place, std::make_unique<Installation>(core, in));
+  if (world == nullptr) world = &core.add_world(place, std::make_unique<Installation>(core));
   return static_cast<Installation&>(*world);  // no other kind is added
 }
 

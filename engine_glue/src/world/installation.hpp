@@ -18,10 +18,10 @@ class Installation final : public SolverInWorld, public btConvexPenetrationDepth
  public:
   /// For the world of a dispatcher, which tells of its steps: one of a fixed number, in constant time.
   static Installation& of_world(SolverCore& core, const btCollisionDispatcher* dispatcher);
-  /// For all dispatchers whose steps nobody counts, or for the tables of hosts.
-  static Installation& of(SolverCore& core, InstalledIn in);
+  /// For all dispatchers whose steps nobody counts, and for configurations.
+  static Installation& of_others(SolverCore& core);
 
-  Installation(SolverCore& core, InstalledIn in);
+  explicit Installation(SolverCore& core);
 
   CreateFuncOf<ContactAlgorithm> contacts;  ///< for the table of contacts
   CreateFuncOf<ContactAlgorithm> closest;   ///< for that of closest points
@@ -42,7 +42,7 @@ class Installation final : public SolverInWorld, public btConvexPenetrationDepth
   void debugDraw(btIDebugDraw*) override {}
 
  private:
-  static Installation& at(SolverCore& core, std::size_t place, InstalledIn in);
+  static Installation& at(SolverCore& core, std::size_t place);
 };
 
 }  // namespace pd::detail

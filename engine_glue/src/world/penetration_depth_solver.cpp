@@ -111,12 +111,4 @@ void BulletPenetrationDepthSolver::reset_statistics() {
   });
 }
 
-btCollisionAlgorithmCreateFunc* BulletPenetrationDepthSolver::one_shot_create_func() {
-  return &detail::Installation::of(*core_, detail::InstalledIn::hosts_own_table).contacts;
-}
-
-btCollisionAlgorithmCreateFunc* BulletPenetrationDepthSolver::persistent_create_func() {
-  return &detail::Installation::of(*core_, detail::InstalledIn::hosts_own_table).persistent;
-}
-
 }  // namespace pd

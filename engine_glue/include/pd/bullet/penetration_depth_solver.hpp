@@ -18,7 +18,6 @@
 
 class btCollisionAlgorithm;
 class btCollisionObject;
-struct btCollisionAlgorithmCreateFunc;
 
 namespace pd {
 
@@ -137,11 +136,6 @@ class BulletPenetrationDepthSolver final : public btConvexPenetrationDepthSolver
   /// A consistent reading only while no thread is inside a call.
   [[nodiscard]] BulletSolverStatistics statistics() const;
   void reset_statistics();
-
-  /// The creator of contact algorithms that `install` registers; owned by the solver.
-  [[nodiscard]] btCollisionAlgorithmCreateFunc* one_shot_create_func();
-  /// Bullet's own convex-convex algorithm with this solver in it; owned by the solver.
-  [[nodiscard]] btCollisionAlgorithmCreateFunc* persistent_create_func();
 
   /// For the contact algorithm and for snapshots.
   [[nodiscard]] detail::PairRegistry& pairs();

@@ -3,11 +3,12 @@
 /// covered contacts (covered_contact.hpp) would come to, without either.
 ///
 /// A body whose facets are far apart in direction meets such a triangle with the facet that faces it, or its outline.
-/// Where the two are nearest decides what the shortest way off the triangle is: a corner of the facet, the triangle's
-/// normal; a corner of the triangle, the facet's; the crossing of two edges, across both. The last two are covered, and
-/// turned to the triangle's normal, where the mesh goes on against them beyond that corner or edge, as it mostly does;
-/// so most of what bodies meet on fine meshes needs no more than the facet cut to the triangle. A sphere meets any
-/// triangle in the point nearest to its centre, which is another triangle's where the mesh goes on against it there.
+/// The place where the two are nearest decides which way off the triangle is the shortest. For a corner of the facet it
+/// is the triangle's normal, for a corner of the triangle the facet's, and for a crossing of two edges the direction
+/// across both. A contact of the last two kinds is covered where the mesh goes on against it beyond that corner or
+/// edge, and is turned to the triangle's normal then. So most of what bodies meet on fine meshes needs no more than the
+/// facet cut to the triangle. A sphere meets any triangle in the point nearest to its centre, which is another
+/// triangle's where the mesh goes on against it there.
 #pragma once
 
 #include <array>
@@ -18,30 +19,42 @@
 #include <vector>
 
 #include "pd/contact/manifold.hpp"
-#include "shapes/triangles_around.hpp"
-#include "union/shared_edges.hpp"
+#include "pd/shape/convex_shape.hpp"
+#include "pd/shape/pose.hpp"
+#include "pd/union_contact/shared_edges.hpp"
 
-namespace pd::detail {
+namespace pd {
 
-/// Of one body or child on one mesh. Keeps its memory, and nothing that an answer could depend on.
+/// Bodies on one mesh, one after another. An object reuses its buffers, and no answer depends on earlier ones.
 class GentleGround {
  public:
-  /// Tells which triangles are around the bodies that are asked about next.
-  void know(std::span<const MeshTriangle> around) { edges_.begin(around); }
+  using Triangle = std::array<Vec3, 3>;
 
+  /// Tells which triangles, in the mesh's frame, are around the bodies that are asked about next. They are to stay
+  /// where they are.
+  void know(std::span<const Triangle> around) {
+    around_ = around;
+    edges_.begin(around);
+  }
+
+  /// The mesh as the next body is asked about it.
+  struct Ground {
+    const Pose& mesh;
+    double margin = 0;          ///< the mesh's
+    const Vec3 &lower, &upper;  ///< of a box around the body, in the mesh's frame: all triangles that meet it are known
+    bool one_sided = false;     ///< the mesh has fronts only, where corners run counter-clockwise
+  };
   /// @param body  what it is taken as, in the world
-  /// @param reach  in the mesh's frame
-  /// @param one_sided  the mesh has fronts only, where corners run counter-clockwise: who is behind one is not answered
+  /// @param threshold  up to which gap points are contacts
   /// @return whether it is a body that may be asked: a solid polytope of few corners, or a sphere. Time O(v + f).
-  bool begin(const PosedShape& body, const BodyReach& reach, const Pose& mesh, double mesh_margin, double threshold,
-             bool one_sided);
+  bool begin(const PosedShape& body, const Ground& ground, double threshold);
 
   /// Asks a triangle. Time O(v + f), and O(k) in the corners of the body's facet.
   /// @param place  its number among the triangles around
-  /// @return false: it has to be asked as one by itself
-  bool ask(const MeshTriangle& triangle, std::size_t place);
+  /// @return false: it has to be asked by itself, as one that a body stands behind must be if the mesh has fronts only
+  bool ask(std::size_t place);
 
-  /// What was found last: up to four points at a time, all along one normal.
+  /// Returns the contacts that were found last, up to four points at a time, each four along one normal.
   [[nodiscard]] std::span<const ContactManifold> manifolds() const { return manifolds_; }
 
  private:
@@ -67,26 +80,27 @@ class GentleGround {
     double level;     ///< of its plane along the normal, both margins in it
     double distance;  ///< of the body from there
   };
-  /// Whether the mesh falls away beyond none of the edges that the body may reach by more than is gentle.
-  [[nodiscard]] bool is_gentle(const MeshTriangle& triangle, std::size_t place, double side);
+  /// True if the mesh falls away by no more than is gentle beyond each edge that the body may reach.
+  [[nodiscard]] bool is_gentle(std::size_t place, double side);
   /// The facet that faces against n, -1 where another one may meet what faces nearly as n.
   [[nodiscard]] int facet_against(const Vec3& n) const;
-  /// What is left of the facet over the triangle, seen along n.
+  /// Cuts the facet to what lies over the triangle, seen along n.
   void cut_facet(const IndexList& loop, const Placed& triangle, const Vec3& n);
   [[nodiscard]] std::span<const Corner> polygon() const { return std::span(polygons_[from_]).first(size_); }
   /// Cuts it to where `outward` leads down from `corner`, an end of the triangle's edge number `edge`.
   void cut(const Vec3& outward, const Vec3& corner, std::int32_t edge);
   /// Which way contacts push where the facet is nearest to the triangle; none where that hangs on more than is known.
   [[nodiscard]] std::optional<Vec3> way_at(const Corner& nearest, const IndexList& loop, int facet,
-                                           const MeshTriangle& triangle, const Placed& placed, std::size_t place);
-  /// The same of a sphere, which one point of the triangle is nearest to, however the mesh goes on.
-  bool ask_sphere(const MeshTriangle& triangle, const Placed& placed, std::size_t place);
+                                           const Placed& placed, std::size_t place);
+  /// Asks a sphere, which one point of the triangle is nearest to, however the mesh goes on.
+  bool ask_sphere(const Placed& placed, std::size_t place);
   void add_points(const Placed& triangle, const Vec3& n);
 
   SharedEdges edges_;
   const ConvexPolytope* polytope_ = nullptr;
   bool sphere_ = false;
-  const BodyReach* reach_ = nullptr;
+  std::span<const Triangle> around_;
+  Vec3 lower_ = Vec3::Zero(), upper_ = Vec3::Zero();
   Pose mesh_;
   Vec3 origin_ = Vec3::Zero();  ///< of the body
   double margin_ = 0;           ///< the body's
@@ -101,4 +115,4 @@ class GentleGround {
   std::vector<ContactManifold> manifolds_;
 };
 
-}  // namespace pd::detail
+}  // namespace pd

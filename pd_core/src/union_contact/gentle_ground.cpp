@@ -1,15 +1,14 @@
-#include "union/gentle_ground.hpp"
+#include "pd/union_contact/gentle_ground.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "pd/bullet/scalar.hpp"
 #include "pd/union_contact/flat_ground.hpp"
-#include "pieces/piece_wrapper.hpp"
+#include "pd/union_contact/union_piece.hpp"
 
-namespace pd::detail {
+namespace pd {
 
 namespace {
 
@@ -23,19 +22,19 @@ constexpr double kFacing = 0.5;
 
 }  // namespace
 
-bool GentleGround::begin(const PosedShape& body, const BodyReach& reach, const Pose& mesh, double mesh_margin,
-                         double threshold, bool one_sided) {
+bool GentleGround::begin(const PosedShape& body, const Ground& ground, double threshold) {
   polytope_ = body.shape->polytope();
   if (polytope_ == nullptr) return false;
   sphere_ = polytope_->num_vertices() == 1;
   if (!sphere_ && (polytope_->affine_dimension() != 3 || polytope_->num_vertices() > kMostVertices)) return false;
-  reach_ = &reach;
-  mesh_ = mesh;
+  lower_ = ground.lower;
+  upper_ = ground.upper;
+  mesh_ = ground.mesh;
   origin_ = body.pose.translation();
   margin_ = body.shape->margin();
-  mesh_margin_ = mesh_margin;
+  mesh_margin_ = ground.margin;
   threshold_ = threshold;
-  one_sided_ = one_sided;
+  one_sided_ = ground.one_sided;
   vertices_.clear();
   normals_.clear();
   for (int v = 0; v < polytope_->num_vertices(); ++v) vertices_.push_back(body.pose.apply(polytope_->vertex(v)));
@@ -45,24 +44,24 @@ bool GentleGround::begin(const PosedShape& body, const BodyReach& reach, const P
   return true;
 }
 
-bool GentleGround::is_gentle(const MeshTriangle& triangle, std::size_t place, double side) {
+bool GentleGround::is_gentle(std::size_t place, double side) {
+  const Triangle& triangle = around_[place];
+  const Vec3 across = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
   for (std::size_t i = 0; i < 3; ++i) {
-    const btVector3& begin = triangle.corners[i];
-    const btVector3& end = triangle.corners[i < 2 ? i + 1 : 0];
-    const btVector3* const corner = edges_.across(place, i);
+    const Vec3& from = triangle[i];
+    const Vec3& to = triangle[i < 2 ? i + 1 : 0];
+    const Vec3* const corner = edges_.across(place, i);
     if (corner == nullptr) {
       // All triangles around the body were read: what shares an edge with one of these and was not is out of reach, and
       // so is the edge.
-      btVector3 lower = begin, upper = begin;
-      lower.setMin(end);
-      upper.setMax(end);
-      if (boxes_meet(lower, upper, reach_->lower(), reach_->upper())) return false;
+      const bool apart =
+          (from.cwiseMin(to).array() > upper_.array()).any() || (from.cwiseMax(to).array() < lower_.array()).any();
+      if (!apart) return false;
       continue;
     }
-    const Vec3 from = to_pd(begin);
-    const Vec3 along = to_pd(end) - from, way = to_pd(*corner) - from;
-    const double rise = side * triangle.across.dot(way);
-    const double out = along.cross(triangle.across).dot(way);
+    const Vec3 along = to - from, way = *corner - from;
+    const double rise = side * across.dot(way);
+    const double out = along.cross(across).dot(way);
     if (out <= 0) return false;  // it folds back
     if (rise < 0 && rise * rise * along.squaredNorm() > kGentle * kGentle * out * out) return false;
   }
@@ -137,8 +136,8 @@ void GentleGround::cut_facet(const IndexList& loop, const Placed& triangle, cons
   }
 }
 
-std::optional<Vec3> GentleGround::way_at(const Corner& nearest, const IndexList& loop, int facet,
-                                         const MeshTriangle& triangle, const Placed& placed, std::size_t place) {
+std::optional<Vec3> GentleGround::way_at(const Corner& nearest, const IndexList& loop, int facet, const Placed& placed,
+                                         std::size_t place) {
   const auto number = static_cast<std::size_t>(nearest.of_triangle);
   switch (nearest.kind) {
     case Kind::corner_of_facet:
@@ -146,10 +145,10 @@ std::optional<Vec3> GentleGround::way_at(const Corner& nearest, const IndexList&
     case Kind::corner_of_triangle: {
       const Vec3 n = -normals_[static_cast<std::size_t>(facet)];
       const Vec3 local = mesh_.rotation().transpose() * n;
-      const Vec3 from = to_pd(triangle.corners[number]);
+      const Vec3& from = around_[place][number];
       bool leads_on = false;
-      const bool all = edges_.round_corner(place, number, [&](const btVector3& end) {
-        const Vec3 way = to_pd(end) - from;
+      const bool all = edges_.round_corner(place, number, [&](const Vec3& end) {
+        const Vec3 way = end - from;
         const double rise = local.dot(way);
         leads_on = rise > 0 && rise * rise > kDecided * kDecided * way.squaredNorm();
         return leads_on;
@@ -159,7 +158,7 @@ std::optional<Vec3> GentleGround::way_at(const Corner& nearest, const IndexList&
       return {};
     }
     case Kind::crossing: {
-      const btVector3* const across = edges_.across(place, number);
+      const Vec3* const across = edges_.across(place, number);
       if (across == nullptr) return {};
       const auto begin = static_cast<std::size_t>(nearest.of_facet);
       const std::size_t end = begin + 1 < loop.size() ? begin + 1 : 0;
@@ -170,7 +169,7 @@ std::optional<Vec3> GentleGround::way_at(const Corner& nearest, const IndexList&
       if (n.dot(placed.normal) < 0) n = -n;
       const double length = n.norm();
       if (!(length > 0)) return {};
-      const Vec3 way = mesh_.apply(to_pd(*across)) - from;
+      const Vec3 way = mesh_.apply(*across) - from;
       const double rise = n.dot(way);
       if (rise > 0 && rise * rise > kLevel * kLevel * length * length * way.squaredNorm()) return placed.normal;
       return n / length;
@@ -199,7 +198,7 @@ void GentleGround::add_points(const Placed& triangle, const Vec3& n) {
   }
 }
 
-bool GentleGround::ask_sphere(const MeshTriangle& triangle, const Placed& placed, std::size_t place) {
+bool GentleGround::ask_sphere(const Placed& placed, std::size_t place) {
   // 1. The point of the triangle nearest to the centre: its foot, or one of the edges that it lies beyond.
   const Vec3& centre = vertices_[0];
   const Vec3 up = placed.side * placed.normal;
@@ -230,20 +229,20 @@ bool GentleGround::ask_sphere(const MeshTriangle& triangle, const Placed& placed
     // 2. Where the mesh goes on against that, the contact is another triangle's: turned to this one's normal it would
     // lie beside it.
     const Vec3 local = mesh_.rotation().transpose() * n;
-    const auto leads_on = [&](const btVector3& from, const btVector3& to) {
-      const Vec3 way = to_pd(to) - to_pd(from);
+    const auto leads_on = [&](const Vec3& from, const Vec3& to) {
+      const Vec3 way = to - from;
       const double rise = local.dot(way);
       return rise > 0 && rise * rise > kLevel * kLevel * way.squaredNorm();
     };
     if (along_edge > 0 && along_edge < 1) {
-      const btVector3* const across = edges_.across(place, edge);
+      const Vec3* const across = edges_.across(place, edge);
       if (across == nullptr) return false;
-      if (leads_on(triangle.corners[edge], *across)) return true;
+      if (leads_on(around_[place][edge], *across)) return true;
     } else {
       const std::size_t number = along_edge > 0 ? (edge + 1) % 3 : edge;
       bool covered = false;
-      const bool all = edges_.round_corner(place, number, [&](const btVector3& end) {
-        covered = leads_on(triangle.corners[number], end);
+      const bool all = edges_.round_corner(place, number, [&](const Vec3& end) {
+        covered = leads_on(around_[place][number], end);
         return covered;
       });
       if (covered) return true;
@@ -259,11 +258,11 @@ bool GentleGround::ask_sphere(const MeshTriangle& triangle, const Placed& placed
   return true;
 }
 
-bool GentleGround::ask(const MeshTriangle& triangle, std::size_t place) {
+bool GentleGround::ask(std::size_t place) {
   manifolds_.clear();
   // 1. How far the body is along the normal of the side where it is.
   Placed placed;
-  for (std::size_t i = 0; i < 3; ++i) placed.corners[i] = mesh_.apply(to_pd(triangle.corners[i]));
+  for (std::size_t i = 0; i < 3; ++i) placed.corners[i] = mesh_.apply(around_[place][i]);
   const Vec3& corner = placed.corners[0];
   const Vec3 across = (placed.corners[1] - corner).cross(placed.corners[2] - corner);
   const double area = across.norm();
@@ -282,8 +281,8 @@ bool GentleGround::ask(const MeshTriangle& triangle, std::size_t place) {
   placed.distance = lowest - placed.level;
   if (placed.distance > threshold_) return true;
   if (-placed.distance > kShallow * (highest - lowest + 2 * margin_)) return false;
-  if (sphere_) return ask_sphere(triangle, placed, place);
-  if (!is_gentle(triangle, place, placed.side)) return false;
+  if (sphere_) return ask_sphere(placed, place);
+  if (!is_gentle(place, placed.side)) return false;
 
   // 2. The facet that faces it. One that has not the lowest corner is steep, as another one is.
   const int facet = facet_against(n);
@@ -299,11 +298,11 @@ bool GentleGround::ask(const MeshTriangle& triangle, std::size_t place) {
   const auto nearest = std::min_element(
       left.begin(), left.end(), [&](const Corner& x, const Corner& y) { return n.dot(x.point) < n.dot(y.point); });
   if (n.dot(nearest->point) - placed.level > threshold_) return true;
-  const std::optional<Vec3> way = way_at(*nearest, loop, facet, triangle, placed, place);
+  const std::optional<Vec3> way = way_at(*nearest, loop, facet, placed, place);
   if (!way || way->dot(n) < kFacing) return false;
   if (*way != n) cut_facet(loop, placed, *way);
   add_points(placed, *way);
   return true;
 }
 
-}  // namespace pd::detail
+}  // namespace pd
