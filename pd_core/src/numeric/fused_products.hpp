@@ -42,15 +42,22 @@ PD_FUSED void run_fused(const Kernel& kernel) {
   kernel(FusedProducts{});
 }
 
+/// Processors of the last ten years never come here: small rather than fast.
+template <class Kernel>
+[[gnu::cold, gnu::noinline]] void run_split(const Kernel& kernel) {
+  kernel(SplitProducts{});
+}
+
 #endif
 
 /// Calls kernel(products), which must become a part of its caller (always_inline) with all that it calls.
 template <class Kernel>
 void with_products(const Kernel& kernel) {
 #ifdef PD_FUSED
-  if (has_fused_products()) return run_fused(kernel);
-#endif
+  has_fused_products() ? run_fused(kernel) : run_split(kernel);
+#else
   kernel(SplitProducts{});
+#endif
 }
 
 }  // namespace pd::detail

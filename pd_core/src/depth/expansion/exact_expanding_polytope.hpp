@@ -27,7 +27,7 @@ struct ExactDepth {
 /// Requires that the origin lies in P (boundary included).
 /// @param simplex  vertices of P to begin with.
 /// @param budget   supports allowed.
-[[nodiscard]] ExactDepth exact_expanding_polytope(const PosedPair& pair, const VertexPair* simplex, int count,
-                                                  int budget, const SearchWatch& watch = {});
+[[nodiscard, gnu::cold]] ExactDepth exact_expanding_polytope(const PosedPair& pair, const VertexPair* simplex,
+                                                             int count, int budget, const SearchWatch& watch = {});
 
 }  // namespace pd::detail

@@ -36,16 +36,7 @@ constexpr std::array<std::array<std::int32_t, kPlaneLanes>, 3> corners_by_place(
 }  // namespace
 
 void InnerSurface::clear() {
-  if (room_ == 0) {
-    vertices.reserve(kFirstRoom);
-    free_.reserve(kFirstRoom / 2);
-    kept_.reserve(kFirstRoom);
-    nearness_.reserve(kFirstRoom);
-    open_edges_.reserve(4 * kFirstRoom);
-    face_numbers_.reserve(kFirstRoom);
-    vertex_numbers_.reserve(kFirstRoom);
-    reserve(kFirstRoom);
-  }
+  if (room_ == 0) make_room(kFirstRoom);
   clear_faces();
   vertices.clear();
 }
@@ -61,8 +52,14 @@ void InnerSurface::clear_faces() {
   if constexpr (kValidate) checked_insertions_ = 0;  // the same checks in every search
 }
 
-void InnerSurface::reserve(int count) {
-  if (count + kPlaneBlock <= room_) return;
+void InnerSurface::make_room(int count) {
+  if (room_ == 0) {
+    for (auto* points : {&vertices, &kept_}) points->reserve(kFirstRoom);
+    for (auto* numbers : {&face_numbers_, &vertex_numbers_}) numbers->reserve(kFirstRoom);
+    free_.reserve(kFirstRoom / 2);
+    nearness_.reserve(kFirstRoom);
+    open_edges_.reserve(4 * kFirstRoom);
+  }
   const int wanted = padded_to_block(2 * count + kPlaneBlock);
   const auto room = static_cast<std::size_t>(wanted);
   triangles_.resize(room);

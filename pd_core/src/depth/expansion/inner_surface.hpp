@@ -149,7 +149,10 @@ class InnerSurface {
   /// Planes of all slots, none of them free.
   void compute_planes();
   /// Room for so many slots, and for a horizon of as many edges.
-  void reserve(int count);
+  void reserve(int count) {
+    if (count + kPlaneBlock > room_) make_room(count);
+  }
+  [[gnu::cold, gnu::noinline]] void make_room(int count);
 
   void clear_faces();
 

@@ -29,7 +29,8 @@ struct UniqueNearestFacet {
 /// @param start   vertices of P to begin with.
 /// @param budget  supports allowed.
 /// @param faces   filled with the faces in the facet's plane.
-[[nodiscard]] UniqueNearestFacet unique_nearest_facet(const PosedPair& pair, std::span<const VertexPair> start,
-                                                      int budget, SupportFaces& faces);
+[[nodiscard, gnu::cold]] UniqueNearestFacet unique_nearest_facet(const PosedPair& pair,
+                                                                 std::span<const VertexPair> start, int budget,
+                                                                 SupportFaces& faces);
 
 }  // namespace pd::detail
