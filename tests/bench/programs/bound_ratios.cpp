@@ -187,7 +187,7 @@ constexpr Bound kBounds[] = {
     {"depth of two boxes", "gauss_boxes: box_rounding", 20, pd::bench::box_depth_share, 50},
     {"contact of two boxes", "gauss_boxes: box_rounding", 20, pd::bench::box_contact_share, 50},
     {"distance of two segments", "kPointError", 26, pd::bench::segments_share, 20},
-    {"a segment before a box's face", "slender_on_box: kHeightError", 23, pd::bench::slender_on_box_share, 20},
+    {"a segment before a box's face", "kBoxPointError", 23, pd::bench::slender_over_face_share, 20},
     {"height over a hull's triangle", "quickhull: kHeightError", 15, pd::bench::hull_height_share, 4},
 };
 

@@ -13,7 +13,7 @@
 #include "bench/programs/real.hpp"
 #include "depth/facets/gauss_sat_boxes.hpp"
 #include "depth/features/nearest_of_segments.hpp"
-#include "depth/pair/slender_on_box.hpp"
+#include "depth/pair/slender_near_box.hpp"
 #include "pd/shape/convex_polytope.hpp"
 #include "pd/shape/pose.hpp"
 #include "shape/hull/affine_frame.hpp"
@@ -145,14 +145,16 @@ inline double segments_share(const Numbers& x) {
 }
 
 /// A segment before one face of a box: its ends, half extents, poses, 23 numbers in all.
-inline double slender_on_box_share(const Numbers& x) {
+inline double slender_over_face_share(const Numbers& x) {
   const auto body = segment_of(x, 0);
   const auto box = ConvexPolytope::box(Vec3(x[6], x[7], x[8]).cwiseAbs());
   const auto pose_body = pose_of(x, 9), pose_box = pose_of(x, 16);
   if (!body || !box || !pose_body || !pose_box) return 0;
   PenetrationDepth out;
   const DepthSettings any{.contact_tolerance = HUGE_VAL};
-  if (!detail::answer_slender_on_box({&*body, &*box, &*pose_body, &*pose_box, {}}, any, out)) return 0;
+  const detail::PolytopePair pair{&*body, &*box, &*pose_body, &*pose_box, {}};
+  if (!detail::answer_slender_near_box(pair, any, Bracket::contact, out)) return 0;
+  if (out.feature_b.kind != Feature::Kind::facet) return 0;
   const auto columns = true_columns(*pose_box);
   Real height = -1;
   for (std::size_t k = 0; k < 3; ++k) {

@@ -9,7 +9,6 @@
 #include "depth/pair/polytope_exact.hpp"
 #include "depth/pair/polytope_rescaled.hpp"
 #include "depth/pair/slender_near_box.hpp"
-#include "depth/pair/slender_on_box.hpp"
 #include "depth/pair/slender_pair.hpp"
 #include "depth/pair/stages.hpp"
 #include "pd/depth/warm_certificate.hpp"
@@ -18,13 +17,11 @@ namespace pd::detail {
 
 namespace {
 
-/// Spheres and capsules, where a closed form is at hand.
-bool answer_slender(const PolytopePair& pair, const DepthSettings& settings, PenetrationDepth& out) {
+/// Spheres and capsules, where a closed form is at hand. Out of line: other pairs need none of its registers.
+[[gnu::noinline]] bool answer_slender(const PolytopePair& pair, const DepthSettings& settings, PenetrationDepth& out) {
   const Bracket bracket = PolytopeQuery::bracket_of(settings);
-  const bool automatic = settings.method == Method::automatic && bracket != Bracket::tightest;
-  if (automatic && answer_slender_pair(pair, settings, bracket, out)) return true;
-  if (bracket == Bracket::contact) return answer_slender_on_box(pair, settings, out);
-  return automatic && answer_slender_near_box(pair, settings, out);
+  return settings.method == Method::automatic && bracket != Bracket::tightest &&
+         (answer_slender_pair(pair, settings, bracket, out) || answer_slender_near_box(pair, settings, bracket, out));
 }
 
 /// Answers by [A] section 2 below the bounds of a surface. Bodies that the surface shows apart end at their closest

@@ -1,11 +1,12 @@
 /// @file
-/// A point or a segment (the cores of spheres and capsules) apart from a box, in closed form: over an edge, beside a
-/// corner, wherever along the segment.
+/// A point or a segment (the cores of spheres and capsules) apart from a box, in closed form: over a face or an edge,
+/// beside a corner, wherever along the segment.
 ///
 /// In the box's own coordinates the squared distance of a point of the segment is a convex function of its place t,
-/// made of parabolas. Where it is least, the coordinates that lie outside the box's extent name the edge or the corner
-/// that is nearest. The rest is the distance of two segments (nearest_of_segments.hpp), bounded from below over the
-/// whole box: a wrong name gives a wide bracket and is passed on.
+/// made of parabolas. Where it is least, the coordinates that lie outside the box's extent name the face, the edge or
+/// the corner that is nearest. The rest is the height of an end over a face, or the distance of two segments
+/// (nearest_of_segments.hpp), bounded from below over the whole box: a wrong name gives a wide bracket and is passed
+/// on.
 #pragma once
 
 #include "depth/pair/polytope_depth.hpp"
@@ -13,8 +14,8 @@
 
 namespace pd::detail {
 
-/// Bracket::certified. Passes on where the core cuts the box or is over a face, and where bracket or class stay in
-/// doubt.
-bool answer_slender_near_box(const PolytopePair& pair, const DepthSettings& settings, PenetrationDepth& out);
+/// Bracket::certified and contact. Passes on where the core cuts the box, and where bracket or class stay in doubt.
+bool answer_slender_near_box(const PolytopePair& pair, const DepthSettings& settings, Bracket bracket,
+                             PenetrationDepth& out);
 
 }  // namespace pd::detail

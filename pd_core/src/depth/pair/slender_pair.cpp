@@ -9,16 +9,6 @@ namespace pd::detail {
 
 namespace {
 
-BracketWidth width_of(const DepthSettings& settings, bool for_contact) {
-  return {kCertifiedWidth, for_contact ? settings.contact_tolerance : 0};
-}
-
-/// Whether the cores' distance may be the margins' sum, as far as rounding tells.
-bool sign_is_unclear(double lower, double upper, double margin) {
-  const double round = 4 * kUnitRoundoff * (upper + margin);
-  return lower - margin <= round && upper - margin >= -round;
-}
-
 /// The cores of two spheres: as of segments without length, in half of the instructions.
 bool answer_points(const PolytopePair& pair, const DepthSettings& settings, Bracket bracket, PenetrationDepth& out) {
   const Vec3 on_a = pair.pose_a->rotation() * pair.a->vertex(0);

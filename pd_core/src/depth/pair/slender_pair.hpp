@@ -18,6 +18,14 @@ inline bool is_sphere(const ConvexShape& shape) {
   const ConvexPolytope* const core = shape.polytope();
   return core != nullptr && core->num_vertices() == 1;
 }
+[[nodiscard]] inline BracketWidth width_of(const DepthSettings& settings, bool for_contact) {
+  return {kCertifiedWidth, for_contact ? settings.contact_tolerance : 0};
+}
+/// Whether the cores' distance may be the margins' sum, as far as rounding tells.
+[[nodiscard]] inline bool sign_is_unclear(double lower, double upper, double margin) {
+  const double round = 4 * kUnitRoundoff * (upper + margin);
+  return lower - margin <= round && upper - margin >= -round;
+}
 /// Two spheres: Bracket::certified and contact, method automatic. Every step is the same from either side, so that no
 /// order of the bodies is asked for. Passes on as below.
 bool answer_spheres(const PosedShape& a, const PosedShape& b, const DepthSettings& settings, PenetrationDepth& out);
