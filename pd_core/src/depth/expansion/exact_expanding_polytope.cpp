@@ -38,20 +38,7 @@ void report(const SearchWatch& watch, const PosedPair& pair, const PairHull& hul
 /// @param given  those to begin with.
 bool full_dimensional(const PosedPair& pair, std::span<const VertexPair> given, PairHull& hull,
                       std::int64_t& support_calls, std::optional<ExactDirection>& flat) {
-  const auto independent = [&](const VertexPair& id) {
-    const int known = hull.num_vertices();
-    if (known == 0) return true;
-    const PairVector d = PairHull::edge(hull.vertex(0), id);
-    if (known == 1) {
-      const Dyadic3 e = pair.exact(d);
-      return e.x.sign() != 0 || e.y.sign() != 0 || e.z.sign() != 0;
-    }
-    if (known == 2) return !pair.parallel(d, hull.edge(0, 1));
-    return pair.sign_determinant(d, hull.edge(0, 1), hull.edge(0, 2)) != 0;
-  };
-  for (const VertexPair& id : given) {
-    if (hull.num_vertices() < 4 && independent(id)) hull.add_vertex(id);
-  }
+  hull.begin(given);
   while (hull.num_vertices() < 4) {
     // Directions normal to what is spanned, enough to find anything outside it.
     std::vector<Dyadic3> directions;
@@ -72,7 +59,7 @@ bool full_dimensional(const PosedPair& pair, std::span<const VertexPair> given, 
         const ExactDirection direction(sign > 0 ? d : Dyadic3{-d.x, -d.y, -d.z});
         ++support_calls;
         const VertexPair s = support(pair, direction);
-        if (independent(s)) {
+        if (hull.is_independent(s)) {
           hull.add_vertex(s);
           found = true;
           break;

@@ -21,6 +21,23 @@ PairVector PairHull::edge(const VertexPair& from, const VertexPair& to) {
   return v;
 }
 
+bool PairHull::is_independent(const VertexPair& id) const {
+  const int known = num_vertices();
+  if (known == 0) return true;
+  const PairVector d = edge(vertices_[0], id);
+  if (known == 2) return !pair_.parallel(d, edge(0, 1));
+  if (known == 3) return pair_.sign_determinant(d, edge(0, 1), edge(0, 2)) != 0;
+  if (pair_.approximate(d).cwiseAbs().sum() > 8 * pair_.vector_error(d)) return true;
+  const Dyadic3 e = pair_.exact(d);
+  return e.x.sign() != 0 || e.y.sign() != 0 || e.z.sign() != 0;
+}
+
+void PairHull::begin(std::span<const VertexPair> given) {
+  for (const VertexPair& id : given) {
+    if (num_vertices() < 4 && is_independent(id)) add_vertex(id);
+  }
+}
+
 const Dyadic3& PairHull::exact_point(int v) {
   std::optional<Dyadic3>& exact = vertices_[v].exact;
   if (!exact) exact = pair_.exact(point(v));

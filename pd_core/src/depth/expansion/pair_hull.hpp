@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -49,6 +50,10 @@ class PairHull : public GrowingHull<PairHull, PairHullFace> {
     return num_vertices() - 1;
   }
   void drop_last_vertex() { vertices_.pop_back(); }
+  /// Whether a vertex of P adds a dimension to the first ones, of which there are at most three.
+  [[nodiscard]] bool is_independent(const VertexPair& id) const;
+  /// Takes the given vertices for the first ones, at most four that span what they can.
+  void begin(std::span<const VertexPair> given);
 
   /// From one vertex to another; of one body alone where they share the other's vertex.
   [[nodiscard]] PairVector edge(int from, int to) const { return edge(vertices_[from], vertices_[to]); }

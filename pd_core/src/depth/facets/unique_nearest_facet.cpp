@@ -207,9 +207,7 @@ class UniqueFacetSearch {
   /// Four vertices of P that do not lie in one plane, for certain: those given, then the farthest in directions towards
   /// the origin across what they span, or any other.
   bool begin(std::span<const VertexPair> start) {
-    for (const VertexPair& id : start) {
-      if (hull_.num_vertices() < 4 && independent(id)) hull_.add_vertex(id);
-    }
+    hull_.begin(start);
     if (hull_.num_vertices() == 0) hull_.add_vertex({0, 0});
     while (hull_.num_vertices() < 4) {
       if (!grow()) return false;
@@ -237,21 +235,12 @@ class UniqueFacetSearch {
       if (!(length > 0x1p-40)) continue;
       for (const double sign : {1.0, -1.0}) {
         const VertexPair s = support(widened(sign / length * d));
-        if (!independent(s)) continue;
+        if (!hull_.is_independent(s)) continue;
         hull_.add_vertex(s);
         return true;
       }
     }
     return false;
-  }
-
-  [[nodiscard]] bool independent(const VertexPair& id) const {
-    const int known = hull_.num_vertices();
-    if (known == 0) return true;
-    const PairVector d = PairHull::edge(hull_.vertex(0), id);
-    if (known == 1) return sum_of(pair_.approximate(d)) > 8 * pair_.vector_error(d);
-    if (known == 2) return !pair_.parallel(d, hull_.edge(0, 1));
-    return pair_.sign_determinant_rounded(d, hull_.edge(0, 1), hull_.edge(0, 2)).value_or(0) != 0;
   }
 
   const PosedPair& pair_;
