@@ -8,6 +8,7 @@
 #include "pd/compound/compound_depth.hpp"
 #include "pd/depth/difference_queries.hpp"
 #include "pd/depth/scratch.hpp"
+#include "shape/refused_vector.hpp"
 
 namespace pd {
 
@@ -21,12 +22,7 @@ using detail::UnionPair;
 Expected<UnionDirectionalDepth> directional_depth(const PosedCompound& a, const PosedCompound& b, const Vec3& direction,
                                                   Scratch& scratch, const UnionSettings& settings) {
   const detail::FloatingPointGuard guard;
-  if (!direction.allFinite()) {
-    return Error{ErrorCode::non_finite, "a direction needs three finite numbers", "direction"};
-  }
-  if (direction.isZero(0)) {
-    return Error{ErrorCode::zero_direction, "a direction needs a length other than zero", "direction"};
-  }
+  if (const auto error = detail::refuse_direction(direction)) return *error;
   if (auto refused = detail::refuse_settings(settings)) return *std::move(refused);
   const Expected<UnionPair> pair = UnionPair::pose(a, b);
   if (!pair) return pair.error();

@@ -18,6 +18,7 @@
 #include "numeric/root_sum.hpp"
 #include "numeric/unit_roundoff.hpp"
 #include "pd/depth/scratch.hpp"
+#include "shape/refused_vector.hpp"
 
 namespace pd {
 
@@ -98,12 +99,7 @@ ContactClass exact_class(const PosedShape& a, const PosedShape& b, const Vec3& p
 
 Expected<DifferenceSupport> support_of_difference(const PosedShape& a, const PosedShape& b, const Vec3& direction) {
   const detail::FloatingPointGuard guard;
-  if (!direction.allFinite()) {
-    return Error{ErrorCode::non_finite, "a direction needs three finite numbers", "direction"};
-  }
-  if (direction.isZero(0)) {
-    return Error{ErrorCode::zero_direction, "a direction needs a length other than zero", "direction"};
-  }
+  if (const auto error = detail::refuse_direction(direction)) return *error;
   const ConvexPolytope* const polytope_a = a.shape->polytope();
   const ConvexPolytope* const polytope_b = b.shape->polytope();
   const double margin = a.shape->margin() + b.shape->margin();
@@ -128,10 +124,7 @@ Expected<DifferenceSupport> support_of_difference(const PosedShape& a, const Pos
 Expected<ContactClass> point_in_difference(const PosedShape& a, const PosedShape& b, const Vec3& point,
                                            Scratch& scratch) {
   const detail::FloatingPointGuard guard;
-  if (!point.allFinite()) return Error{ErrorCode::non_finite, "a point needs three finite numbers", "point"};
-  if (point.cwiseAbs().maxCoeff() > kMaxCoordinate) {
-    return Error{ErrorCode::out_of_range, "coordinates are limited to 1e300", "point"};
-  }
+  if (const auto error = detail::refuse_point(point)) return *error;
   // x lies in P where the origin lies in B + (-(A + x)).
   const std::optional<Vec3> exact = exact_sum(a.pose.translation(), point);
   const bool polytopes = a.shape->polytope() && b.shape->polytope();
@@ -154,16 +147,8 @@ Expected<ContactClass> point_in_difference(const PosedShape& a, const PosedShape
 Expected<LineCrossing> line_in_difference(const PosedShape& a, const PosedShape& b, const Vec3& point,
                                           const Vec3& direction) {
   const detail::FloatingPointGuard guard;
-  if (!direction.allFinite()) {
-    return Error{ErrorCode::non_finite, "a direction needs three finite numbers", "direction"};
-  }
-  if (direction.isZero(0)) {
-    return Error{ErrorCode::zero_direction, "a direction needs a length other than zero", "direction"};
-  }
-  if (!point.allFinite()) return Error{ErrorCode::non_finite, "a point needs three finite numbers", "point"};
-  if (point.cwiseAbs().maxCoeff() > kMaxCoordinate) {
-    return Error{ErrorCode::out_of_range, "coordinates are limited to 1e300", "point"};
-  }
+  if (const auto error = detail::refuse_direction(direction)) return *error;
+  if (const auto error = detail::refuse_point(point)) return *error;
   const ConvexPolytope* const polytope_a = a.shape->polytope();
   const ConvexPolytope* const polytope_b = b.shape->polytope();
   if (!polytope_a || !polytope_b || a.shape->margin() > 0 || b.shape->margin() > 0) {

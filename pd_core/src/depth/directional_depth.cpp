@@ -15,6 +15,7 @@
 #include "numeric/floating_point_guard.hpp"
 #include "numeric/root_sum.hpp"
 #include "pd/depth/scratch.hpp"
+#include "shape/refused_vector.hpp"
 #include "structure/overlay/overlay_walk.hpp"
 
 namespace pd {
@@ -288,12 +289,7 @@ Expected<DirectionalDepth> directional_depth(const PosedShape& a, const PosedSha
                                              const DirectionalHierarchies* hierarchies,
                                              DirectionalCertificate* certificate) {
   const detail::FloatingPointGuard guard;
-  if (!direction.allFinite()) {
-    return Error{ErrorCode::non_finite, "a direction needs three finite numbers", "direction"};
-  }
-  if (direction.isZero(0)) {
-    return Error{ErrorCode::zero_direction, "a direction needs a length other than zero", "direction"};
-  }
+  if (const auto error = detail::refuse_direction(direction)) return *error;
   const ConvexPolytope* const polytope_a = a.shape->polytope();
   const ConvexPolytope* const polytope_b = b.shape->polytope();
   const bool exact = polytope_a && polytope_b && a.shape->margin() == 0 && b.shape->margin() == 0;

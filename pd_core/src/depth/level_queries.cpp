@@ -8,6 +8,7 @@
 #include "depth/rays/outer_crossing.hpp"
 #include "numeric/floating_point_guard.hpp"
 #include "numeric/root_sum.hpp"
+#include "shape/refused_vector.hpp"
 
 namespace pd {
 
@@ -40,16 +41,6 @@ Rounded time_of(const detail::PosedPair& pair, const Dyadic3& d, const std::arra
   return offset.sign() > 0 ? size : Rounded{-size.upper, -size.lower};
 }
 
-std::optional<Error> refuse_direction(const Vec3& direction) {
-  if (!direction.allFinite()) {
-    return Error{ErrorCode::non_finite, "a direction needs three finite numbers", "direction"};
-  }
-  if (direction.isZero(0)) {
-    return Error{ErrorCode::zero_direction, "a direction needs a length other than zero", "direction"};
-  }
-  return std::nullopt;
-}
-
 const char* const kLevels = "levels run from 0 to one below their number";
 
 }  // namespace
@@ -66,7 +57,7 @@ Expected<LevelCrossing> crossing_of_level(const PolyhedralHierarchy& hierarchy, 
   if (small.num_vertices() > PolyhedralHierarchy::kMaxDegree + 1) {
     return Error{ErrorCode::limit_exceeded, "the small body has at most 9 vertices", "small"};
   }
-  if (const auto error = refuse_direction(direction)) return *error;
+  if (const auto error = detail::refuse_direction(direction)) return *error;
   const Pose still;
   const detail::PosedPair pair(small, still, hierarchy.polytope(), still);
   LevelCrossing out;
@@ -91,7 +82,7 @@ Expected<LevelCrossing> crossing_of_level(const TwinHierarchy& twin, int level, 
   const detail::FloatingPointGuard guard;
   if (level < 0 || level >= twin.num_levels()) return Error{ErrorCode::out_of_range, kLevels, "level"};
   if (!point.allFinite()) return Error{ErrorCode::non_finite, "a point needs three finite numbers", "point"};
-  if (const auto error = refuse_direction(direction)) return *error;
+  if (const auto error = detail::refuse_direction(direction)) return *error;
   LevelCrossing out;
   std::array<Rounded, 2> times{};
   const Dyadic3 d = detail::to_dyadic(direction);
