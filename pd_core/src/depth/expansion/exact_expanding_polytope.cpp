@@ -38,37 +38,34 @@ void report(const SearchWatch& watch, const PosedPair& pair, const PairHull& hul
 /// @param given  those to begin with.
 bool full_dimensional(const PosedPair& pair, std::span<const VertexPair> given, PairHull& hull,
                       std::int64_t& support_calls, std::optional<ExactDirection>& flat) {
+  const auto extends = [&](const Dyadic3& d) {
+    if (d.x.sign() == 0 && d.y.sign() == 0 && d.z.sign() == 0) return false;
+    for (const int sign : {1, -1}) {
+      const ExactDirection direction(sign > 0 ? d : Dyadic3{-d.x, -d.y, -d.z});
+      ++support_calls;
+      const VertexPair s = support(pair, direction);
+      if (hull.is_independent(s)) {
+        hull.add_vertex(s);
+        return true;
+      }
+      flat = direction;
+    }
+    return false;
+  };
+  const Dyadic one(1.0), zero(0.0);
+  const Dyadic3 axes[] = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
   hull.begin(given);
   while (hull.num_vertices() < 4) {
     // Directions normal to what is spanned, enough to find anything outside it.
     std::vector<Dyadic3> directions;
-    const Dyadic one(1.0), zero(0.0);
-    const std::array<Dyadic3, 3> axes{Dyadic3{one, zero, zero}, Dyadic3{zero, one, zero}, Dyadic3{zero, zero, one}};
-    if (hull.num_vertices() <= 1) {
-      directions.assign(axes.begin(), axes.end());
-    } else if (hull.num_vertices() == 2) {
-      const Dyadic3 e = pair.exact(hull.edge(0, 1));
-      for (const Dyadic3& axis : axes) directions.push_back(cross(e, axis));
-    } else {
+    if (hull.num_vertices() == 3) {
       directions.push_back(cross(pair.exact(hull.edge(0, 1)), pair.exact(hull.edge(0, 2))));
+    } else {
+      const bool spans_line = hull.num_vertices() == 2;
+      for (const Dyadic3& axis : axes)
+        directions.push_back(spans_line ? cross(pair.exact(hull.edge(0, 1)), axis) : axis);
     }
-    bool found = false;
-    for (const Dyadic3& d : directions) {
-      if (d.x.sign() == 0 && d.y.sign() == 0 && d.z.sign() == 0) continue;
-      for (const int sign : {1, -1}) {
-        const ExactDirection direction(sign > 0 ? d : Dyadic3{-d.x, -d.y, -d.z});
-        ++support_calls;
-        const VertexPair s = support(pair, direction);
-        if (hull.is_independent(s)) {
-          hull.add_vertex(s);
-          found = true;
-          break;
-        }
-        flat = direction;
-      }
-      if (found) break;
-    }
-    if (!found) return false;
+    if (std::none_of(directions.begin(), directions.end(), extends)) return false;
   }
   return true;
 }
