@@ -11,10 +11,10 @@ namespace pd::dimension {
 namespace {
 
 /// Moves what lies on the wrong side by rounding alone; far below the least epsilon.
-constexpr double kRoom = 1e-9;
+constexpr double kBlowUpRoom = 1e-9;
 
 /// A hull whose vertices and planes stand for a body in a frame: inner <= 1, outer >= limit, as multiples of it.
-double blow_up(Side side, double limit) { return side == Side::outer ? limit : 1 - kRoom; }
+double blow_up(Side side, double limit) { return side == Side::outer ? limit : 1 - kBlowUpRoom; }
 
 /// conv(kernel) is in K is in limit conv(kernel), about the frame's origin.
 template <int D>
@@ -62,7 +62,7 @@ ApproximateBody<D> from_halfspaces(const Body<D>& body, double epsilon, Represen
     }
     return r;
   }
-  const double factor = side == Side::inner ? 1 / builder.limit() : 1 + kRoom;
+  const double factor = side == Side::inner ? 1 / builder.limit() : 1 + kBlowUpRoom;
   const auto& hull = builder.hull();
   const std::vector<std::int32_t> same = detail::merge_equal_planes(hull);
   for (std::int32_t f = 0; f < static_cast<std::int32_t>(same.size()); ++f) {

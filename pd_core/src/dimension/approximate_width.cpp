@@ -15,7 +15,7 @@ namespace pd::dimension {
 namespace {
 
 /// What rounding may take from the bounds in a frame where the body is about a unit ball.
-constexpr double kRoom = 1e-10;
+constexpr double kWidthRoom = 1e-10;
 /// Of epsilon, for the structure; the search takes the rest. The kernel's hull is much dearer than the search, which
 /// finds its last digits fast: measured on 1e6 points from .5 to .93, the total still fell at .9 by a third to a half.
 constexpr double kStructureShare = 0.9;
@@ -96,8 +96,8 @@ class WidthSearch {
   void finish() {
     result_.direction.normalize();
     result_.upper = body_.support(result_.direction).value + body_.support(-result_.direction).value;
-    result_.lower = std::min(result_.lower * (1 - kRoom), result_.upper);
-    result_.upper *= 1 + kRoom;
+    result_.lower = std::min(result_.lower * (1 - kWidthRoom), result_.upper);
+    result_.upper *= 1 + kWidthRoom;
     result_.width = result_.upper;
     result_.facets = static_cast<std::int64_t>(hull_.facets().size());
     result_.vertices = static_cast<std::int64_t>(hull_.vertices().size());
@@ -150,7 +150,7 @@ Expected<ApproximateWidth<D>> approximate_width(const ComposedBody<D>& body, dou
   ApproximateWidth<D> width = *found;
   width.bracket_reached = width.bracket_reached && polytope->bracket_reached;
   // A polytope that was left coarse may promise nothing: the upper bound is infinite then.
-  width.upper = width.upper / std::max(0.0, 1 - polytope->epsilon) * (1 + kRoom);
+  width.upper = width.upper / std::max(0.0, 1 - polytope->epsilon) * (1 + kWidthRoom);
   width.width = width.upper;
   return width;
 }

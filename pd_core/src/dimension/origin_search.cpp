@@ -11,14 +11,14 @@ namespace pd::dimension::detail {
 namespace {
 
 /// How far the body is grown, in parts of its width on each side, and what that leaves.
-struct Growth {
+struct OriginGrowth {
   double least;      ///< covers the oracle's error: h_K <= h' + least * w'
   double used;       ///< the grown points lie in K_epsilon, and so do they after moving by `slack`
   double slack;      ///< a length of the frame: K_epsilon holds the grown body swept by a ball of this radius
   double separable;  ///< a length: where O is not in K_epsilon, some unit u has h'(u) + least * w'(u) <= -separable
 };
 
-Growth growth_of(const SupportBody& body, const OriginFrame& frame, double epsilon) {
+OriginGrowth growth_of(const SupportBody& body, const OriginFrame& frame, double epsilon) {
   const double error = body.relative_error();
   const double least = error / (1 - error);
   const double used = 0.4375 * epsilon;  // 7/16: between least <= epsilon / 3 and epsilon / 2
@@ -33,7 +33,7 @@ struct Probe {
 };
 
 /// Asks in the unit direction u whether it separates O from K; if not, finds a point of the grown body beyond O.
-Probe probe(const OriginFrame& frame, const Growth& growth, const Point& u) {
+Probe probe(const OriginFrame& frame, const OriginGrowth& growth, const Point& u) {
   using Kind = Probe::Kind;
   Point high = frame.support(u);
   const double reach = high.dot(u);
@@ -48,7 +48,7 @@ Probe probe(const OriginFrame& frame, const Growth& growth, const Point& u) {
 
 /// GJK: the point of the simplex nearest to O, until the simplex holds O or a direction separates. @return false where
 /// it came to no end within its steps or doubles no longer tell its points apart.
-bool descend(const OriginFrame& frame, const Growth& growth, OriginAnswer& answer) {
+bool descend(const OriginFrame& frame, const OriginGrowth& growth, OriginAnswer& answer) {
   LeastNormSimplex simplex(frame.center());
   const int steps = 16 + 8 * static_cast<int>(frame.center().size());
   double norm = frame.center().norm();
@@ -75,7 +75,7 @@ bool descend(const OriginFrame& frame, const Growth& growth, OriginAnswer& answe
 /// The ellipsoid method on the directions: every probe that does not separate leaves the half of the directions u with
 /// <point, u> < 0. Where O is not in K_epsilon, a ball of directions is never cut; so once the ellipsoid is smaller
 /// than that ball, O is in K_epsilon.
-void cut_directions(const OriginFrame& frame, const Growth& growth, OriginAnswer& answer) {
+void cut_directions(const OriginFrame& frame, const OriginGrowth& growth, OriginAnswer& answer) {
   const Eigen::Index size = frame.center().size();
   const double n = static_cast<double>(size);
   // h' + least * w' changes by at most this much a unit of u, and unit directions within `radius` of a separating one
@@ -114,7 +114,7 @@ void cut_directions(const OriginFrame& frame, const Growth& growth, OriginAnswer
 
 /// Lemma 13 by Lemmas 14 and 15: the least value of h' + least * w' over v = (w, -1), w in [-alpha, alpha]^(N-1), where
 /// the last axis points to K's centre.
-void minimise_envelope(const OriginFrame& frame, const Growth& growth, OriginAnswer& answer) {
+void minimise_envelope(const OriginFrame& frame, const OriginGrowth& growth, OriginAnswer& answer) {
   const Eigen::Index size = frame.center().size();
   const double height = frame.center().norm();
   // h(v) >= -height + inner |v|: only |v| < height / inner can separate.
@@ -147,7 +147,7 @@ double ternary_oracle_error(double epsilon, int dimension, double fatness) {
 
 OriginAnswer locate_origin(const SupportBody& body, const OriginSettings& settings) {
   const OriginFrame frame(body);
-  const Growth growth = growth_of(body, frame, settings.epsilon);
+  const OriginGrowth growth = growth_of(body, frame, settings.epsilon);
   OriginAnswer answer;
   const double distance = frame.center().norm();
   if (distance <= frame.inner_radius()) return answer;

@@ -13,7 +13,7 @@ namespace {
 /// Relative to the largest distance: residuals below are rounding (about 2 D roundings of 2^-53 each, with room).
 constexpr double kFlat = 0x1p-44;
 /// How far beyond the core's outer ellipsoid a point of a stream may lie before it joins.
-constexpr double kSlack = 2;
+constexpr double kFarSlack = 2;
 
 /// The ascent in the frame: weights u on lifted points q = (y, 1), w_i = q_i^T Lambda^-1 q_i, Lambda = sum u q q^T.
 template <int D>
@@ -180,7 +180,7 @@ void CoreSet<D>::add(std::span<const Vector<D>> chunk) {
   const Vector<D>* const end = p + chunk.size();
   while (p != end && !full_) extend_span(*p++);
   while (p != end) {
-    const double limit = kSlack * kSlack * sandwich_.ratio * sandwich_.ratio;
+    const double limit = kFarSlack * kFarSlack * sandwich_.ratio * sandwich_.ratio;
     const Matrix<D> linear = to_unit_.linear;
     const Vector<D> centre = sandwich_.centre;
     while (p != end && (linear * (*p - centre)).squaredNorm() <= limit) ++p;
