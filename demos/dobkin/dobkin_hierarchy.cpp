@@ -23,7 +23,7 @@ namespace {
 
 namespace palette = render::palette;
 
-constexpr render::ViewAngle kAngle{.azimuth_degrees = -62, .elevation_degrees = 18};
+constexpr render::ViewAngle kPebbleAngle{.azimuth_degrees = -62, .elevation_degrees = 18};
 constexpr std::array kTones{palette::hex(0x9C5486), palette::kNearestFacet, palette::kBodyB, palette::kFacetVertex};
 
 /// Points spread evenly over an ellipsoid, each moved a little.
@@ -74,12 +74,12 @@ std::vector<int> levels_of_size(const PolyhedralHierarchy& h, const std::vector<
   return chosen;
 }
 
-Expected<render::Image> draw(render::Scene scene, const render::Box& box, render::Renderer& renderer,
-                             render::Size size) {
+Expected<render::Image> draw_pebble(render::Scene scene, const render::Box& box, render::Renderer& renderer,
+                                    render::Size size) {
   scene.ground.visible = false;
   scene.focus = box;
-  constexpr render::Insets kInsets{.left = 0.07, .right = 0.07, .top = 0.2, .bottom = 0.06};
-  return renderer.draw(scene, render::frame_box(box, size, kAngle, kInsets), size);
+  constexpr render::Insets kRoomAround{.left = 0.07, .right = 0.07, .top = 0.2, .bottom = 0.06};
+  return renderer.draw(scene, render::frame_box(box, size, kPebbleAngle, kRoomAround), size);
 }
 
 /// Nested surfaces, the innermost the most solid.
@@ -180,9 +180,9 @@ Expected<render::Image> hierarchy_picture(render::Renderer& renderer, render::Si
   }
   const render::Size panel = render::panel_size(size, 2);
   render::Box box = render::bounds(right);
-  auto first = draw(left, render::bounds(left), renderer, panel);
+  auto first = draw_pebble(left, render::bounds(left), renderer, panel);
   if (!first) return first.error();
-  auto second = draw(right, box, renderer, panel);
+  auto second = draw_pebble(right, box, renderer, panel);
   if (!second) return second.error();
   render::Image left_image = std::move(first).value(), right_image = std::move(second).value();
   render::annotate(left_image, {.legend = left_legend});
@@ -213,9 +213,9 @@ Expected<render::Image> descent_picture(render::Renderer& renderer, render::Size
     const render::Box box = render::bounds(scene);
     scene.ground.visible = false;
     scene.focus = box;
-    constexpr render::Insets kInsets{.left = 0.1, .right = 0.1, .top = 0.15, .bottom = 0.1};
+    constexpr render::Insets kRoomAround{.left = 0.1, .right = 0.1, .top = 0.15, .bottom = 0.1};
     return renderer.draw(
-        scene, render::frame_box(box, size, {.azimuth_degrees = -30, .elevation_degrees = 12}, kInsets), size);
+        scene, render::frame_box(box, size, {.azimuth_degrees = -30, .elevation_degrees = 12}, kRoomAround), size);
   }();
   if (!drawn) return drawn.error();
   std::int64_t dots = 0;

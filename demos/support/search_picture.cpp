@@ -41,9 +41,9 @@ render::MeshRef faces_mesh(const SearchStep& step, Wanted&& wanted) {
 
 /// From the side that a normal points to, a little off it, so that the face and what lies beyond both read.
 render::ViewAngle facing(const Vec3& normal) {
-  constexpr double kDegrees = 180 / std::numbers::pi;
-  const double height = std::asin(std::clamp(normal.z(), -1.0, 1.0)) * kDegrees;
-  return {std::atan2(normal.y(), normal.x()) * kDegrees + 35, std::clamp(height + 12, -50.0, 50.0)};
+  constexpr double kInDegrees = 180 / std::numbers::pi;
+  const double height = std::asin(std::clamp(normal.z(), -1.0, 1.0)) * kInDegrees;
+  return {std::atan2(normal.y(), normal.x()) * kInDegrees + 35, std::clamp(height + 12, -50.0, 50.0)};
 }
 
 }  // namespace

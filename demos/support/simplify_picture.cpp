@@ -36,13 +36,13 @@ render::MeshRef points_mesh(const std::vector<Vec3>& scan, double size) {
   return render::triangle_mesh(points, triangles);
 }
 
-Expected<render::Image> draw(render::Scene scene, const render::Box& box, render::Renderer& renderer,
-                             render::Size size) {
+Expected<render::Image> draw_mesh(render::Scene scene, const render::Box& box, render::Renderer& renderer,
+                                  render::Size size) {
   scene.ground.height = box.lower.z();
   scene.ground.scale_bar = false;  // a scan does not say its unit
   scene.focus = box;
-  constexpr render::Insets kInsets{.left = 0.08, .right = 0.08, .top = 0.1, .bottom = 0.1};
-  return renderer.draw(scene, render::frame_box(box, size, {}, kInsets), size);
+  constexpr render::Insets kRoomAround{.left = 0.08, .right = 0.08, .top = 0.1, .bottom = 0.1};
+  return renderer.draw(scene, render::frame_box(box, size, {}, kRoomAround), size);
 }
 
 }  // namespace
@@ -61,9 +61,9 @@ int write_simplify_picture(const std::vector<Vec3>& scan, const ConvexPolytope& 
   render::Scene before, after;
   before.bodies.push_back({.mesh = dots, .colour = palette::kBodyA, .edges = false});
   after.bodies.push_back({.mesh = render::polytope_mesh(hull), .colour = palette::kBodyB});
-  auto first = draw(before, box, renderer, size);
+  auto first = draw_mesh(before, box, renderer, size);
   if (!first) return report_failure(first.error());
-  auto second = draw(after, box, renderer, size);
+  auto second = draw_mesh(after, box, renderer, size);
   if (!second) return report_failure(second.error());
   const std::vector<render::Panel> panels = {
       {std::move(first).value(), fmt::format("the scan, {} points", scan.size())},
