@@ -52,11 +52,19 @@ function(pd_unity_by_folder target)
 endfunction()
 
 # pd_unity_whole(<target> [<header>...] | <target> REUSE_FROM <other>): where CMAKE_UNITY_BUILD is on, the whole target is one source
-# (those with the property SKIP_UNITY_BUILD_INCLUSION aside), which parses every header once: for targets of which a source takes
-# longer to parse than to compile. So a name in an anonymous namespace is the target's. Elsewhere its headers are precompiled.
+# (those with the property SKIP_UNITY_BUILD_INCLUSION aside, and those with a UNITY_GROUP of their own), which parses every header
+# once: for targets of which a source takes longer to parse than to compile. So a name in an anonymous namespace is the target's.
+# Elsewhere its headers are precompiled.
 function(pd_unity_whole target)
   if(CMAKE_UNITY_BUILD)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE BATCH UNITY_BUILD_BATCH_SIZE 0)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+    get_target_property(sources ${target} SOURCES)
+    foreach(source ${sources})
+      get_source_file_property(group ${source} UNITY_GROUP)
+      if(NOT group)
+        set_source_files_properties(${source} PROPERTIES UNITY_GROUP all)
+      endif()
+    endforeach()
   else()
     pd_precompile_headers(${target} ${ARGN})
   endif()
