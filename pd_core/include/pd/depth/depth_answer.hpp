@@ -81,9 +81,9 @@ struct Statistics {
 };
 
 /// A depth with its own proof. Lengths are in the unit of the input; vectors and points in the frame that A and B
-/// share. L below is the largest |coordinate| of b - a over the posed vertices; S is the size of the numbers that
-/// polytopes are given in: the distance of A's farthest vertex from its frame's origin, that of B's, the margins, and
-/// |t_B - t_A|, together.
+/// share. L below is the largest |coordinate| of b - a over the posed vertices. S is the size of the numbers that
+/// polytopes are given in. It adds up the distances of A's and of B's farthest vertex from the origins of their frames,
+/// both margins, and |t_B - t_A|.
 struct PenetrationDepth {
   ContactClass contact = ContactClass::separated;
   Method method = Method::automatic;  ///< the engine that answered
