@@ -143,7 +143,7 @@ export class Pair {
 export interface Settings {
   /** Compounds and contact manifolds take "automatic". */
   method?: 'automatic' | 'expansion' | 'overlay' | 'decomposition' | 'shallow' | 'grid';
-  /** The gap between `lower` and `upper`: the exact depth rounded down and up; within 2e-14 of the size; or as `contactTolerance` says. */
+  /** The gap between `lower` and `upper`: the exact depth rounded down and up; within 2e-14 of the size of the numbers given; or as `contactTolerance` says. */
   bracket?: 'tightest' | 'certified' | 'contact';
   /** Bodies farther apart than this are not told apart any further. */
   beyond?: number;

@@ -21,7 +21,7 @@ std::string text(const char* format, double a, double b) {
   return buffer.data();
 }
 
-/// What `Bracket::certified` promises, in units of S.
+/// `Bracket::certified` promises this width, in units of S.
 constexpr double kCertifiedWidth = 2e-14;
 
 double ulp_of(double x) { return x > 0 ? std::ldexp(1.0, std::ilogb(x) - 52) : 0; }

@@ -7,9 +7,10 @@
 namespace pd::detail {
 
 struct BracketWidth {
-  double of_size =
-      0;  ///< in units of the size: of two polytopes the difference's reach, else the largest |coordinate| seen
-  double length = 0;  ///< in the unit of the input; the wider of both is enough
+  /// In units of the size: the reach of the difference of two polytopes, else the largest |coordinate| seen.
+  double of_size = 0;
+  /// In the unit of the input; the wider of both is enough.
+  double length = 0;
 
   /// Around the cores: relative errors are of the distance, or of the depth, that is left between the margins.
   double margin = 0;

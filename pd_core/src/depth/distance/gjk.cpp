@@ -87,8 +87,8 @@ class DistanceSearch {
     return r.lower > 0 && (r.upper - r.lower <= width_.limit(size) || width_.is_within(relative_, r.lower, r.upper));
   }
 
-  /// What is near the origin says little about a curved P's size; its centre says more, and its far side, which takes
-  /// a support, all.
+  /// Points near the origin say little about the size of a curved P. Its centre says more, and its far side, which
+  /// takes a support, says all.
   void see_far_side(double height) {
     if (kIsOfPolytopes || seen_far_side_ || is_narrow(height, size_) || !is_narrow(height, difference_.reach())) return;
     const Vec3 centre = difference_.centre();

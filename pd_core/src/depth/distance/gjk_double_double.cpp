@@ -18,6 +18,8 @@ Simplex::Corner corner(const DifferenceVertex& s) { return {s, widened(s.x)}; }
 template <class Difference>
 class BoundedSearch {
  public:
+  static constexpr bool kIsOfPolytopes = std::is_same_v<Difference, PolytopeDifference>;
+
   BoundedSearch(const Difference& difference, double relative, const BracketWidth& width, int max_steps,
                 std::vector<std::int32_t>& stack, std::int64_t& support_calls)
       : difference_(difference),
@@ -32,7 +34,9 @@ class BoundedSearch {
     out.normal = Vec3::UnitX();
   }
 
-  void see(const DifferenceVertex& s) { size_ = std::max(size_, s.x.cwiseAbs().maxCoeff()); }
+  void see(const DifferenceVertex& s) {
+    if constexpr (!kIsOfPolytopes) size_ = std::max(size_, s.x.cwiseAbs().maxCoeff());
+  }
 
   /// Each nearest point is nearer than the last.
   bool has_reached(const Simplex& simplex) {
@@ -58,7 +62,7 @@ class BoundedSearch {
 
   bool goes_on(const Simplex& /*simplex*/, const Simplex::Corner& s) {
     ClosestPoint& r = out.nearest;
-    if constexpr (!std::is_same_v<Difference, PolytopeDifference>) see(s.vertex);
+    see(s.vertex);
     const double height = -s.vertex.x.dot(toward_);
     if (height - error_.lower > r.lower) {
       r.lower = height - error_.lower;
@@ -80,7 +84,7 @@ class BoundedSearch {
   int steps_left_;
   std::vector<std::int32_t>& stack_;
   std::int64_t& support_calls_;
-  double size_ = std::is_same_v<Difference, PolytopeDifference> ? difference_.reach() : 0;
+  double size_ = kIsOfPolytopes ? difference_.reach() : 0;  ///< what `BracketWidth` measures by
   double length_ = 0;
   Vec3 toward_;
 };
@@ -92,7 +96,7 @@ ClosestPointWithNormal closest_point_double_double(const Difference& difference,
                                                    double relative, const BracketWidth& width, int max_steps,
                                                    std::vector<std::int32_t>& stack, std::int64_t& support_calls) {
   BoundedSearch search(difference, relative, width, max_steps, stack, support_calls);
-  if constexpr (!std::is_same_v<Difference, PolytopeDifference>) {
+  if constexpr (!BoundedSearch<Difference>::kIsOfPolytopes) {
     search.see(first);
     search.see(difference.support(difference.centre(), nullptr));
     ++support_calls;

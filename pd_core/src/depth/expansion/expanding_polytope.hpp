@@ -154,8 +154,10 @@ class ExpandingPolytope {
   /// Steps 3 to 9, at most `goal.max_steps` times.
   ExpansionResult grow(const ExpansionGoal& asked, ExpansionResult result) {
     ExpansionGoal goal = asked;
-    double largest = 0;
-    for (const DifferenceVertex& v : surface_.vertices) largest = std::max(largest, v.x.cwiseAbs().maxCoeff());
+    double largest = 0;  // asked for by the goals of curved bodies alone
+    if constexpr (kSupportsCertify<Difference>) {
+      for (const DifferenceVertex& v : surface_.vertices) largest = std::max(largest, v.x.cwiseAbs().maxCoeff());
+    }
     const double error = lower_error();
     double highest = -std::numeric_limits<double>::infinity();
     ExpansionBudget budget(goal.vertices);
@@ -217,7 +219,7 @@ class ExpandingPolytope {
       if (budget.exhausted(step, distance, height, surface_)) break;
       // 9.
       surface_.vertices.push_back(s);
-      largest = std::max(largest, s.x.cwiseAbs().maxCoeff());
+      if constexpr (kSupportsCertify<Difference>) largest = std::max(largest, s.x.cwiseAbs().maxCoeff());
       f = surface_.insert(f, static_cast<int>(surface_.vertices.size()) - 1, s.x.x(), s.x.y(), s.x.z());
       if (f < 0) return undecided(result);
     }

@@ -50,7 +50,7 @@ class PairHull : public GrowingHull<PairHull, PairHullFace> {
     return num_vertices() - 1;
   }
   void drop_last_vertex() { vertices_.pop_back(); }
-  /// Whether a vertex of P adds a dimension to the first ones, of which there are at most three.
+  /// Returns true if a vertex of P adds a dimension to the first ones, of which there are at most three.
   [[nodiscard]] bool is_independent(const VertexPair& id) const;
   /// Takes the given vertices for the first ones, at most four that span what they can.
   void begin(std::span<const VertexPair> given);

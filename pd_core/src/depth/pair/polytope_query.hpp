@@ -71,6 +71,7 @@ class PolytopeQuery {
   [[nodiscard]] bool for_contact() const { return bracket == Bracket::contact; }
   /// How narrow the bracket of doubles has to be.
   [[nodiscard]] BracketWidth width() const { return {kCertifiedWidth, for_contact() ? settings.contact_tolerance : 0}; }
+  /// How wide a bracket of doubles may be, in the unit of the input.
   [[nodiscard]] double widest_bracket() const { return width().limit(difference.reach()); }
   [[nodiscard]] int vertices() const { return pair.a->num_vertices() + pair.b->num_vertices(); }
   /// Sizes outside this range are left to the exact stages, which rescale.

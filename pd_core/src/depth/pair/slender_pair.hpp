@@ -21,7 +21,7 @@ inline bool is_sphere(const ConvexShape& shape) {
 [[nodiscard]] inline BracketWidth width_of(const DepthSettings& settings, bool for_contact) {
   return {kCertifiedWidth, for_contact ? settings.contact_tolerance : 0};
 }
-/// Whether the cores' distance may be the margins' sum, as far as rounding tells.
+/// Returns true if the cores' distance may be the margins' sum, as far as rounding tells.
 [[nodiscard]] inline bool sign_is_unclear(double lower, double upper, double margin) {
   const double round = 4 * kUnitRoundoff * (upper + margin);
   return lower - margin <= round && upper - margin >= -round;
