@@ -7,9 +7,9 @@
 namespace pd::detail {
 
 struct BracketWidth {
-  /// In units of the size: the reach of the difference of two polytopes, else the largest |coordinate| seen.
+  /// The unit is the size: the reach of the difference of two polytopes, else the largest |coordinate| seen.
   double of_size = 0;
-  /// In the unit of the input; the wider of both is enough.
+  /// The unit is that of the input; the wider of both is enough.
   double length = 0;
 
   /// Around the cores: relative errors are of the distance, or of the depth, that is left between the margins.

@@ -69,9 +69,9 @@ class PolytopeQuery {
   }
   /// Whether the answer may be as wide as `contact_tolerance` and needs no exact numbers.
   [[nodiscard]] bool for_contact() const { return bracket == Bracket::contact; }
-  /// How narrow the bracket of doubles has to be.
+  /// A bracket of doubles that is this narrow is enough.
   [[nodiscard]] BracketWidth width() const { return {kCertifiedWidth, for_contact() ? settings.contact_tolerance : 0}; }
-  /// How wide a bracket of doubles may be, in the unit of the input.
+  /// A bracket of doubles may be this wide, in the unit of the input.
   [[nodiscard]] double widest_bracket() const { return width().limit(difference.reach()); }
   [[nodiscard]] int vertices() const { return pair.a->num_vertices() + pair.b->num_vertices(); }
   /// Sizes outside this range are left to the exact stages, which rescale.
