@@ -133,18 +133,13 @@ std::string feature_in_words(const Feature& feature, const query::NamedShape& sh
   std::string list;
   for (std::size_t i = 0; i < std::min(ids.size(), kShown); ++i) list += fmt::format("{}{}", i ? ", " : "", ids[i]);
   if (ids.size() > kShown) list += fmt::format(", ... {} in all", ids.size());
-  switch (feature.kind) {
-    case Feature::Kind::vertex:
-      return "vertex " + list;
-    case Feature::Kind::edge:
-      return "edge " + list;
-    case Feature::Kind::facet:
-      return "facet " + list;
-    case Feature::Kind::none:
-      break;
-  }
-  return "none";
+  return feature.kind == Feature::Kind::vertex  ? "vertex " + list
+         : feature.kind == Feature::Kind::edge  ? "edge " + list
+         : feature.kind == Feature::Kind::facet ? "facet " + list
+                                                : "none";
 }
+
+std::string label(const std::string& word) { return word == "-" ? "standard input" : word; }
 
 void print_body(std::string_view name, const std::string& word, const query::NamedShape& shape) {
   std::string facts;
@@ -153,7 +148,7 @@ void print_body(std::string_view name, const std::string& word, const query::Nam
     facts = fmt::format("  (hull: {} vertices, {} edges, {} facets)", hull->num_vertices(), hull->num_edges(),
                         hull->num_facets());
   }
-  print_row(name, (word == "-" ? "standard input" : word) + facts);
+  print_row(name, label(word) + facts);
   if (shape.hull_note) print_row("", in_words(*shape.hull_note));
 }
 
@@ -218,14 +213,13 @@ void print_result(const DepthArguments& arguments, const query::Pair& pair, cons
   print_statistics(to_string(result.method), result.statistics, nanoseconds);
 }
 
-int draw_picture(const DepthArguments& arguments, const query::Pair& pair, const PenetrationDepth& result) {
+int draw_picture(const DepthArguments& arguments, [[maybe_unused]] const query::Pair& pair,
+                 [[maybe_unused]] const PenetrationDepth& result) {
 #ifdef PDEPTH_WITH_DEMOS
   return demo::write_difference_picture(
       {&pair.a.shape, &pair.b.shape, pair.pose_a, pair.pose_b, arguments.file_a, arguments.file_b}, result,
       arguments.picture);
 #else
-  (void)pair;
-  (void)result;
   return refuse_picture(arguments.picture);
 #endif
 }
@@ -236,9 +230,7 @@ bool write_trace(const std::string& file, const query::SearchRecorder& recorder)
     complain("{} cannot be written", file);
     return false;
   }
-  if (recorder.steps() == 0) {
-    complain("no polytope was expanded, so {} holds no steps (--method expansion forces one)", file);
-  }
+  if (recorder.steps() == 0) complain("no polytope was expanded: {} holds no steps (try --method expansion)", file);
   return true;
 }
 
@@ -294,29 +286,31 @@ int run_along(const DepthArguments& arguments, const query::Pair& pair, Progress
 
 // ---- solids ------------------------------------------------------------------------------------------------------
 
-/// A mesh as a solid; a convex body is one, too.
+/// A mesh as a solid; a polytope is one, too, and other shapes stand beside it.
 struct SolidBody {
-  MeshSolid solid;
+  std::shared_ptr<const MeshSolid> solid;
+  std::optional<ConvexShape> shape;
   bool convex = false;
 };
 
-SolidBody solid_of(const std::shared_ptr<const MeshSolid>& loaded, const std::string& word) {
-  if (loaded) return {*loaded, false};
-  const query::NamedShape shape = read_body_argument({word});
-  if (shape.shape.polytope() == nullptr || shape.shape.margin() > 0) {
-    query::refuse("unsupported", word + ": beside a solid stand meshes and boxes; `pdepth query` takes other bodies",
-                  "");
+SolidBody solid_of(const std::shared_ptr<const MeshSolid>& loaded, const BodyArgument& argument) {
+  if (loaded && argument.margin > 0) {
+    query::refuse("unsupported", argument.word + ": a solid takes no margin here; --hull asks for the hulls", "");
   }
+  if (loaded) return {loaded, {}, false};
+  const query::NamedShape shape = read_body_argument(argument);
+  if (shape.shape.polytope() == nullptr || shape.shape.margin() > 0) return {{}, shape.shape, true};
   auto solid = MeshSolid::from_polytope(*shape.shape.polytope());
-  if (!solid) query::refuse(to_string(solid.error().code), word + ": " + solid.error().message, "");
-  return {*std::move(solid), true};
+  if (!solid) query::refuse(to_string(solid.error().code), argument.word + ": " + solid.error().message, "");
+  return {std::make_shared<const MeshSolid>(*std::move(solid)), {}, true};
 }
 
 void print_body(std::string_view name, const std::string& word, const SolidBody& body) {
+  if (!body.solid) return print_row(name, label(word));
   print_row(name,
-            fmt::format("{}  ({}: {} vertices, {} triangles{})", word == "-" ? "standard input" : word,
-                        body.convex ? "convex" : "solid", body.solid.vertices().size(), body.solid.triangles().size(),
-                        body.solid.num_shells() > 1 ? fmt::format(", {} shells", body.solid.num_shells()) : ""));
+            fmt::format("{}  ({}: {} vertices, {} triangles{})", label(word), body.convex ? "convex" : "solid",
+                        body.solid->vertices().size(), body.solid->triangles().size(),
+                        body.solid->num_shells() > 1 ? fmt::format(", {} shells", body.solid->num_shells()) : ""));
 }
 
 void print_solids(const DepthArguments& arguments, const SolidBody& a, const SolidBody& b, const SolidDepth& result,
@@ -327,10 +321,8 @@ void print_solids(const DepthArguments& arguments, const SolidBody& a, const Sol
   print_sentence("A and B", result.contact);
   print_answer(result, "across a place where they touch, towards A");
   if (fits_exactly) print_row("seat", "A fits exactly: it can only slide, if it can move at all");
-  if (result.face_a >= 0 && result.face_b >= 0) {
-    print_row("of A", fmt::format("face {}", result.face_a));
-    print_row("of B", fmt::format("face {}", result.face_b));
-  }
+  if (result.face_a >= 0) print_row("of A", fmt::format("face {}", result.face_a));
+  if (result.face_b >= 0) print_row("of B", fmt::format("face {}", result.face_b));
   fmt::print("\n");
   print_row("method", fmt::format("solid, {} pairs of triangles, {} by {} convex parts, {}", result.work.triangle_pairs,
                                   result.work.parts_a, result.work.parts_b, duration_in_words(nanoseconds)));
@@ -339,28 +331,34 @@ void print_solids(const DepthArguments& arguments, const SolidBody& a, const Sol
 
 int run_solids(const DepthArguments& arguments, const SolidBody& a, const SolidBody& b, Progress& progress) {
   if (arguments.method != "auto") query::refuse("unsupported", "--method: solids are answered by auto", "");
-  if (!arguments.picture.empty() || !arguments.trace.empty() || !arguments.margins.empty() ||
-      !arguments.direction.empty()) {
-    query::refuse("unsupported",
-                  "--picture, --trace, --margin and --direction are for convex bodies here; --hull asks for the hulls",
+  if (!(arguments.picture + arguments.trace + arguments.direction).empty()) {
+    query::refuse("unsupported", "--picture, --trace and --direction need convex bodies; --hull asks for the hulls",
                   "");
   }
-  const PosedSolid posed_a{&a.solid, parse_pose(arguments.pose_a, "--pose-a")};
-  const PosedSolid posed_b{&b.solid, parse_pose(arguments.pose_b, "--pose-b")};
+  const Pose pose_a = parse_pose(arguments.pose_a, "--pose-a"), pose_b = parse_pose(arguments.pose_b, "--pose-b");
   Scratch scratch;
-  progress.begin(fmt::format("depth of {} and {} triangles", a.solid.triangles().size(), b.solid.triangles().size()));
+  progress.begin("depth of a solid and another body");
+  const auto depth_of = [&](const auto& of_a, const auto& of_b) {
+    const auto found = penetration_depth(of_a, of_b, scratch);
+    if (!found) query::refuse(to_string(found.error().code), found.error().message, "");
+    return *found;
+  };
+  const PosedSolid posed_a{a.solid.get(), pose_a}, posed_b{b.solid.get(), pose_b};
   const query::Stopwatch watch;
-  const SolidDepth result = *penetration_depth(posed_a, posed_b, scratch);
+  const SolidDepth result = !b.solid   ? depth_of(posed_a, PosedShape{&*b.shape, pose_b})
+                            : !a.solid ? depth_of(PosedShape{&*a.shape, pose_a}, posed_b)
+                                       : depth_of(posed_a, posed_b);
   const std::int64_t nanoseconds = watch.nanoseconds();
+  const bool may_sit = result.contact == ContactClass::touching && a.solid && b.solid;
   progress.end();
   if (!arguments.json) {
-    const Expected<bool> seat = result.contact == ContactClass::touching ? is_seat(posed_a, posed_b) : false;
+    const Expected<bool> seat = may_sit ? is_seat(posed_a, posed_b) : false;
     print_solids(arguments, a, b, result, nanoseconds, seat && *seat);
     return kDone;
   }
   return print_object([&](auto& writer) {
     query::write_solid_answer(result, nanoseconds, writer);
-    if (result.contact == ContactClass::touching) query::write_seat(posed_a, posed_b, writer);
+    if (may_sit) query::write_seat(posed_a, posed_b, writer);
     if (!a.convex) writer.key("a_is").string("solid");
     if (!b.convex) writer.key("b_is").string("solid");
   });
@@ -371,7 +369,7 @@ int run_solids(const DepthArguments& arguments, const SolidBody& a, const SolidB
 void print_parts(const DepthArguments& arguments, const query::BodyPair& pair, const UnionDepth& result,
                  std::int64_t nanoseconds) {
   const auto print_union = [](std::string_view name, const std::string& word, const query::NamedBody& body) {
-    print_row(name, fmt::format("{}  (convex parts: {})", word == "-" ? "standard input" : word, body.parts.size()));
+    print_row(name, fmt::format("{}  (convex parts: {})", label(word), body.parts.size()));
   };
   fmt::print("\n");
   print_union("A", arguments.file_a, pair.a);
@@ -423,7 +421,8 @@ int run_depth(const DepthArguments& arguments) {
   if (!arguments.hull && !(arguments.file_a == "-" && arguments.file_b == "-")) {
     const auto solid_a = read_solid_argument(arguments.file_a), solid_b = read_solid_argument(arguments.file_b);
     if (solid_a || solid_b) {
-      return run_solids(arguments, solid_of(solid_a, arguments.file_a), solid_of(solid_b, arguments.file_b), progress);
+      const auto [a, b] = bodies_of(arguments);
+      return run_solids(arguments, solid_of(solid_a, a), solid_of(solid_b, b), progress);
     }
   }
   const query::Pair pair = read_pair(arguments);

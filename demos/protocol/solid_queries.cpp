@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "protocol/pair_reader.hpp"
@@ -45,19 +46,24 @@ void write_seat(const PosedSolid& a, const PosedSolid& b, JsonWriter& answer) {
 
 namespace {
 
-/// Two solids where they stand; one of them is missing where it is neither a mesh nor a polytope.
+/// Two bodies where they stand, each a solid or a convex shape that is none.
 struct SolidPair {
   std::shared_ptr<const MeshSolid> a, b;
+  std::optional<ConvexShape> shape_a, shape_b;
   Pose pose_a, pose_b;
 
-  [[nodiscard]] bool complete() const { return a && b; }
-  [[nodiscard]] PosedSolid posed_a() const { return {a.get(), pose_a}; }
-  [[nodiscard]] PosedSolid posed_b() const { return {b.get(), pose_b}; }
+  /// False for unions, and for two shapes.
+  [[nodiscard]] bool is_answered() const { return (a && (b || shape_b)) || (b && shape_a); }
 };
 
 SolidPair read_solids(const Node& line, const Limits& limits) {
-  return {read_as_solid(line.at("a"), limits), read_as_solid(line.at("b"), limits), read_optional_pose(line, "pose_a"),
-          read_optional_pose(line, "pose_b")};
+  const Node a = line.at("a"), b = line.at("b");
+  SolidPair pair{read_as_solid(a, limits), read_as_solid(b, limits), {}, {}, {}, {}};
+  if (!pair.a && pair.b) pair.shape_a = read_beside_solid(a, limits);
+  if (!pair.b && pair.a) pair.shape_b = read_beside_solid(b, limits);
+  pair.pose_a = read_optional_pose(line, "pose_a");
+  pair.pose_b = read_optional_pose(line, "pose_b");
+  return pair;
 }
 
 void answer_by_union(std::string_view query, const Node& line, Session& session, JsonWriter& answer) {
@@ -67,10 +73,15 @@ void answer_by_union(std::string_view query, const Node& line, Session& session,
 void answer_solids(const SolidPair& pair, const SolidSettings& settings, const Node& line, Session& session,
                    JsonWriter& answer) {
   const Stopwatch watch;
-  const SolidDepth result =
-      value_or_refuse(penetration_depth(pair.posed_a(), pair.posed_b(), session.scratch, settings), line);
+  const auto depth_of = [&](const auto& a, const auto& b) {
+    return value_or_refuse(penetration_depth(a, b, session.scratch, settings), line);
+  };
+  const PosedSolid a{pair.a.get(), pair.pose_a}, b{pair.b.get(), pair.pose_b};
+  const SolidDepth result = pair.shape_b   ? depth_of(a, PosedShape{&*pair.shape_b, pair.pose_b})
+                            : pair.shape_a ? depth_of(PosedShape{&*pair.shape_a, pair.pose_a}, b)
+                                           : depth_of(a, b);
   write_solid_answer(result, watch.nanoseconds(), answer);
-  if (result.contact == ContactClass::touching) write_seat(pair.posed_a(), pair.posed_b(), answer);
+  if (result.contact == ContactClass::touching && pair.a && pair.b) write_seat(a, b, answer);
 }
 
 void answer_solid_depth(const Node& line, Session& session, JsonWriter& answer) {
@@ -86,22 +97,27 @@ void answer_solid_depth(const Node& line, Session& session, JsonWriter& answer) 
   if (const auto delta = line.find("delta")) settings.delta = read_delta(*delta);
   settings.max_points = read_max_points(line);
   const SolidPair pair = read_solids(line, session.limits);
-  if (!pair.complete()) return answer_by_union("depth", line, session, answer);
+  if (!pair.is_answered()) return answer_by_union("depth", line, session, answer);
   answer_solids(pair, settings, line, session, answer);
 }
 
 void answer_solid_distance(const Node& line, Session& session, JsonWriter& answer) {
   allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b"});
   const SolidPair pair = read_solids(line, session.limits);
-  if (!pair.complete()) return answer_by_union("distance", line, session, answer);
+  if (!pair.is_answered()) return answer_by_union("distance", line, session, answer);
   answer_solids(pair, {}, line, session, answer);
 }
 
 void answer_solid_intersect(const Node& line, Session& session, JsonWriter& answer) {
   allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b"});
   const SolidPair pair = read_solids(line, session.limits);
-  if (!pair.complete()) return answer_by_union("intersect", line, session, answer);
-  answer.key("class").string(to_string(classify(pair.posed_a(), pair.posed_b())));
+  if (!pair.is_answered()) return answer_by_union("intersect", line, session, answer);
+  const auto class_of = [&]() -> Expected<ContactClass> {
+    if (pair.shape_b) return classify({pair.a.get(), pair.pose_a}, {&*pair.shape_b, pair.pose_b}, session.scratch);
+    if (pair.shape_a) return classify({pair.b.get(), pair.pose_b}, {&*pair.shape_a, pair.pose_a}, session.scratch);
+    return classify({pair.a.get(), pair.pose_a}, {pair.b.get(), pair.pose_b});
+  };
+  answer.key("class").string(to_string(value_or_refuse(class_of(), line)));
 }
 
 constexpr std::array kSolidQueries{

@@ -137,12 +137,17 @@ bool names_solid(const Node& line, const Limits& limits) {
   return false;
 }
 
+namespace {
+
+bool is_union(const Node& node) {
+  const auto type = node.find("type");
+  return (type && (type->json() == "compound" || type->json() == "star")) || is_mesh_of_parts(node);
+}
+
+}  // namespace
+
 std::shared_ptr<const MeshSolid> read_as_solid(const Node& node, const Limits& limits) {
-  if (node.find("margin")) return nullptr;
-  if (const auto type = node.find("type")) {
-    if (type->json() == "compound" || type->json() == "star") return nullptr;
-  }
-  if (is_mesh_of_parts(node)) return nullptr;
+  if (node.find("margin") || is_union(node)) return nullptr;
   if (auto solid = read_solid(node, limits)) {
     node.remark("solid");
     return solid;
@@ -152,6 +157,11 @@ std::shared_ptr<const MeshSolid> read_as_solid(const Node& node, const Limits& l
   auto solid = MeshSolid::from_polytope(*shape.shape.polytope());
   if (!solid) return nullptr;
   return std::make_shared<const MeshSolid>(*std::move(solid));
+}
+
+std::optional<ConvexShape> read_beside_solid(const Node& node, const Limits& limits) {
+  if (is_union(node) || read_solid(node, limits)) return std::nullopt;
+  return read_shape(node, limits).shape;
 }
 
 bool is_mesh_of_parts(const Node& node) {

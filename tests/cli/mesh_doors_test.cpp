@@ -251,6 +251,41 @@ std::string wavy_torus_obj() {
   return text;
 }
 
+/// Balls and swept boxes beside solids, also those of too many parts, in lines and in the command.
+TEST_F(MeshDoors, CurvedAndSweptShapesBesideASolid) {
+  const std::string ball = R"({"type":"sphere","radius":0.25})";
+  const std::string notch = R"("pose_b":{"translation":[1.5,1.5,0.5]})";
+  const Json apart = answer(depth_line(mesh(angle_), ball, notch));
+  EXPECT_EQ(apart.at("class"), "separated") << apart;
+  EXPECT_EQ(apart.at("method"), "solid") << apart;
+  EXPECT_NEAR(apart.at("distance").get<double>(), 0.25, 1e-15);
+  EXPECT_EQ(apart.value("a_is", ""), "solid");
+  EXPECT_FALSE(apart.contains("b_is")) << apart;
+  const std::string swept = R"({"type":"box","half_extents":[0.25,0.25,0.25],"margin":0.125})";
+  const Json turned = answer(depth_line(swept, mesh(angle_), R"("pose_a":{"translation":[1.5,1.5,0.5]})"));
+  EXPECT_NEAR(turned.at("distance").get<double>(), 0.125, 1e-15) << turned;
+  EXPECT_EQ(turned.value("b_is", ""), "solid") << turned;
+  for (const auto& [pose, contact] : {std::pair{"[1.5,1.5,0.5]", "separated"}, std::pair{"[1.25,1.5,0.5]", "touching"},
+                                      std::pair{"[1.2,1.5,0.5]", "overlapping"}}) {
+    const std::string line = R"({"id":1,"query":"intersect","a":)" + mesh(angle_) + R"(,"b":)" + ball +
+                             R"(,"pose_b":{"translation":)" + pose + "}}";
+    EXPECT_EQ(answer(line).at("class"), contact) << line;
+  }
+  const std::string torus = mesh(write("torus.obj", wavy_torus_obj()));
+  const Json inside = answer(depth_line(torus, ball, R"("pose_b":{"translation":[3,0,0]})"));
+  EXPECT_EQ(inside.at("class"), "overlapping") << inside;
+  EXPECT_FALSE(inside.contains("bracket_reached")) << inside;
+  EXPECT_GT(inside.at("stats").at("parts_a"), 1) << inside;
+  EXPECT_GT(inside.at("lower"), 0.75) << inside;
+  EXPECT_LT(inside.at("upper"), 1.25) << inside;
+  expect_words(run("depth torus.obj sphere:0.25 --pose-b 3,0,0").out, {"A and B overlap", "solid: 49 vertices"});
+  expect_words(run("depth box:0.25,0.25,0.25 angle.obj --margin 0.125,0 --pose-a 1.5,1.5,0.5").out,
+               {"A and B are apart", "0.125", "face"});
+  const auto refused = run("depth angle.obj sphere:0.5 --margin 0.1");
+  EXPECT_EQ(refused.status, 2);
+  expect_words(refused.err, {"angle.obj", "--hull"});
+}
+
 TEST_F(MeshDoors, TheBudgetOfADepthIsTheCallers) {
   const std::string torus = mesh(write("torus.obj", wavy_torus_obj()));
   const std::string pose = R"("pose_b":{"translation":[2.4,0,0]})";

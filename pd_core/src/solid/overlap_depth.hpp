@@ -20,4 +20,10 @@ struct OverlapQuestion {
 /// the translations about zero (translation_cover.hpp) narrows the bracket.
 void set_depth(const OverlapQuestion& question, Scratch& scratch, SolidDepth& out);
 
+class ShapeBeside;
+
+/// Asks a solid and a convex shape likewise: the hull, then the parts of the solid, then the cover.
+void set_depth_beside(const PosedSolid& a, const PosedShape& b, ShapeBeside& beside, const SolidSettings& settings,
+                      Scratch& scratch, SolidDepth& out);
+
 }  // namespace pd::detail

@@ -38,6 +38,11 @@ double largest_coordinate(const MeshSolid& solid) {
 
 }  // namespace
 
+Pose placed_at(const Pose& pose, const Vec3& translation) {
+  return pose.is_quaternion() ? *Pose::from_quaternion(pose.quaternion_wxyz(), translation)
+                              : Pose::from_trusted_matrix(pose.rotation(), translation);
+}
+
 void rotation_numerators(const Pose& pose, std::array<Dyadic, 9>& rotation, Dyadic& denominator) {
   if (!pose.is_quaternion()) {
     for (int i = 0; i < 9; ++i) rotation[static_cast<std::size_t>(i)] = Dyadic(pose.rotation()(i / 3, i % 3));

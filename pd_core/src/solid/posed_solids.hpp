@@ -102,6 +102,9 @@ class PosedSolids {
   mutable std::int64_t exact_signs_ = 0;
 };
 
+/// The same rotation with another translation.
+[[nodiscard]] Pose placed_at(const Pose& pose, const Vec3& translation);
+
 /// A pose's rotation as numerators, and their denominator: |q|^2 of a quaternion, else 1.
 void rotation_numerators(const Pose& pose, std::array<Dyadic, 9>& rotation, Dyadic& denominator);
 

@@ -8,69 +8,10 @@
 
 #include "numeric/root_sum.hpp"
 #include "solid/solid_contact.hpp"
-#include "solid/surface_distance.hpp"
-#include "solid/winding.hpp"
 
 namespace pd::detail {
 
 namespace {
-
-/// A signed distance from a surface, positive inside, rounded down: at most that of the point.
-struct SurfaceDepth {
-  double depth = 0;
-  Vec3 inward = Vec3::Zero();  ///< the unit direction in which it grows; zero: unknown
-};
-
-/// Depths of points in one of the solids, where it stands.
-class DepthProbe {
- public:
-  DepthProbe(const PosedSolids& solids, Body body)
-      : solids_(solids),
-        body_(body),
-        alone_(solids.solid(body), identity_, solids.solid(body), identity_),
-        slack_(16 * solids.error()) {}
-  DepthProbe(const DepthProbe&) = delete;
-  DepthProbe& operator=(const DepthProbe&) = delete;
-
-  [[nodiscard]] SurfaceDepth at(const Vec3& x) const { return signed_depth(x, HUGE_VAL, 0); }
-  /// With the depth of a point that is `moved` away, which bounds the search and often tells the side.
-  [[nodiscard]] SurfaceDepth at(const Vec3& x, const SurfaceDepth& near, double moved) const {
-    const double kept = std::abs(near.depth) - moved - slack_;
-    return signed_depth(x, std::abs(near.depth) + moved + 2 * slack_, kept > 0 ? near.depth : 0);
-  }
-
- private:
-  /// @param known_sign  of the depth; 0: unknown
-  [[nodiscard]] SurfaceDepth signed_depth(const Vec3& x, double at_most, double known_sign) const {
-    NearestTriangle nearest = nearest_triangle(solids_, body_, x, at_most);
-    const bool is_far = nearest.distance > slack_;
-    SurfaceDepth out;
-    if (is_far && (known_sign != 0 ? known_sign > 0 : holds(x))) {
-      out.depth = nearest.distance - slack_;
-      if (nearest.triangle >= 0) out.inward = (x - nearest.foot).stableNormalized();
-      return out;
-    }
-    if (nearest.triangle < 0) nearest = nearest_triangle(solids_, body_, x);
-    out.depth = -reach_to_triangle(solids_.corners(body_, nearest.triangle), x) - slack_;
-    if (is_far) out.inward = (nearest.foot - x).stableNormalized();
-    return out;
-  }
-
-  /// The side of a point farther from the surface than the slack: that of the point in the body's own frame, rounded.
-  [[nodiscard]] bool holds(const Vec3& x) const {
-    PosedPoint own;
-    own.x = std::ldexp(1.0, -alone_.scale_exponent()) * solids_.in_own_frame(body_, x);
-    own.exact = true;
-    const PointPlace place = place_in(alone_, Body::a, own);
-    return !place.on_surface && place.winding > 0;
-  }
-
-  const Pose identity_;
-  const PosedSolids& solids_;
-  Body body_;
-  PosedSolids alone_;
-  double slack_;
-};
 
 /// A point and its depths, A moved.
 struct Spot {
@@ -97,14 +38,52 @@ double distance_from_zero(const Vec3& middle, double half) {
   return (middle.cwiseAbs().array() - half).cwiseMax(0.0).matrix().norm() * (1 - 0x1p-50);
 }
 
+/// Some two hundred vertices at most.
+std::vector<Vec3> landmarks_of(const PosedSolids& solids, Body body) {
+  constexpr std::size_t kMostVertices = 200;
+  const std::size_t count = solids.solid(body).vertices().size();
+  std::vector<Vec3> points;
+  for (std::size_t v = 0; v < count; v += count / kMostVertices + 1) {
+    points.push_back(solids.point(body, static_cast<std::int32_t>(v)).x);
+  }
+  return points;
+}
+
+class StandingSolid final : public StandingBody {
+ public:
+  StandingSolid(const PosedSolid& a, const PosedSolid& b, const PosedSolids& solids)
+      : a_(a), b_(b), solids_(solids), probe_(solids, Body::b) {}
+
+  [[nodiscard]] SurfaceDepth depth_at(const Vec3& x) override { return probe_.at(x); }
+  [[nodiscard]] SurfaceDepth depth_at(const Vec3& x, const SurfaceDepth& near, double moved) override {
+    return probe_.at(x, near, moved);
+  }
+  [[nodiscard]] std::vector<Vec3> landmarks() const override { return landmarks_of(solids_, Body::b); }
+
+  [[nodiscard]] Meeting meeting_after(const Vec3& way) override {
+    constexpr std::int64_t kPairsOfAPoint = 16;  // take the same time
+    const SolidContact found = contact_of(PosedSolids(*a_.solid, a_.pose, *b_.solid, b_.pose, way));
+    Meeting out{.contact = found.contact, .points = 1 + found.pairs / kPairsOfAPoint};
+    if (found.triangle_a < 0) return out;
+    for (const PosedPoint& p : solids_.corners(Body::a, found.triangle_a)) out.corners_a.push_back(p.x);
+    for (const PosedPoint& p : solids_.corners(Body::b, found.triangle_b)) out.corners_b.push_back(p.x);
+    return out;
+  }
+
+ private:
+  const PosedSolid &a_, &b_;
+  const PosedSolids& solids_;
+  const DepthProbe probe_;
+};
+
 class TranslationCover {
  public:
-  TranslationCover(const OverlapQuestion& question, SolidDepth& out)
+  TranslationCover(const CoverQuestion& question, SolidDepth& out)
       : question_(question),
         solids_(question.solids),
         out_(out),
         in_a_(solids_, Body::a),
-        in_b_(solids_, Body::b),
+        standing_(question.standing),
         box_a_(solids_.box(Body::a, solids_.solid(Body::a).nodes().front())),
         box_b_(solids_.box(Body::b, solids_.solid(Body::b).nodes().front())),
         factor_(1 + 0.999 * question.settings.delta) {}
@@ -128,7 +107,6 @@ class TranslationCover {
   /// Share of a cube that a ball should reach over, before fresh points are looked at.
   static constexpr double kUseful = 0.1;
   static constexpr int kMany = 10, kFew = 4;  ///< fresh points along the longest side of where the bodies may meet
-  static constexpr std::size_t kMostVertices = 200;
   /// A cube that is still in doubt after so many halvings has a size of 1e-12 of the first: no ball ends at a wall of
   /// no width, and much smaller cubes would not be told from each other.
   static constexpr int kMostLevels = 40;
@@ -148,7 +126,7 @@ class TranslationCover {
     if (is_shallow || radius < kUseful * cube.radius()) {
       if (is_shallow && leaves(cube, spots)) return halve(cube, spots, radius);
       if (is_shallow) take_crossing(cube.middle, spots);
-      if (cube.level == 0) take_vertices(spots);
+      if (cube.level == 0) take_landmarks(spots);
       const double step = sample(cube.level == 0 || is_shallow ? kMany : kFew, cube.middle, spots);
       radius = climb(spots, cube, step);
     }
@@ -157,17 +135,15 @@ class TranslationCover {
 
   [[nodiscard]] Spot spot_at(const Vec3& x, const Vec3& way) {
     ++out_.work.points;
-    return {x, in_a_.at(x - way), in_b_.at(x)};
+    return {x, in_a_.at(x - way), standing_.depth_at(x)};
   }
 
-  void take_vertices(std::vector<Spot>& spots) {
-    for (const Body body : {Body::a, Body::b}) {
-      const std::size_t count = solids_.solid(body).vertices().size();
-      const std::size_t step = count / kMostVertices + 1;
-      for (std::size_t v = 0; v < count; v += step) {
-        spots.push_back(spot_at(solids_.point(body, static_cast<std::int32_t>(v)).x, Vec3::Zero()));
-      }
-    }
+  void take_landmarks(std::vector<Spot>& spots) {
+    const auto take = [&](const std::vector<Vec3>& points) {
+      for (const Vec3& x : points) spots.push_back(spot_at(x, Vec3::Zero()));
+    };
+    take(landmarks_of(solids_, Body::a));
+    take(standing_.landmarks());
   }
 
   /// Adds the points of a grid in the box where the bodies' boxes meet.
@@ -224,7 +200,7 @@ class TranslationCover {
     Spot next;
     next.x = spot.x + by;
     ++out_.work.points;
-    next.in_b = in_b_.at(next.x, spot.in_b, length);
+    next.in_b = standing_.depth_at(next.x, spot.in_b, length);
     if (next.in_b.depth + spot.in_a.depth + length <= spot.radius()) return false;
     next.in_a = in_a_.at(next.x - way, spot.in_a, length);
     if (!(next.radius() > spot.radius())) return false;
@@ -245,21 +221,17 @@ class TranslationCover {
     }
   }
 
-  /// The class of A, moved by the vector as stored (an outside length), and B.
-  SolidContact contact_after(const Vec3& way) {
-    constexpr std::int64_t kPairsOfAPoint = 16;  // take the same time
-    const PosedSolid &a = question_.a, &b = question_.b;
-    const SolidContact found = contact_of(PosedSolids(*a.solid, a.pose, *b.solid, b.pose, way));
-    out_.work.points += 1 + found.pairs / kPairsOfAPoint;
+  [[nodiscard]] StandingBody::Meeting meeting_after(const Vec3& way) {
+    StandingBody::Meeting found = standing_.meeting_after(way);
+    out_.work.points += found.points;
     return found;
   }
 
-  /// Adds the corners of two triangles that cross.
+  /// Adds the corners of two places that cross.
   void take_crossing(const Vec3& way, std::vector<Spot>& spots) {
-    const SolidContact found = contact_after(outside(1) * way);
-    if (found.triangle_a < 0) return;
-    for (const PosedPoint& p : solids_.corners(Body::a, found.triangle_a)) spots.push_back(spot_at(p.x + way, way));
-    for (const PosedPoint& p : solids_.corners(Body::b, found.triangle_b)) spots.push_back(spot_at(p.x, way));
+    const StandingBody::Meeting found = meeting_after(outside(1) * way);
+    for (const Vec3& x : found.corners_a) spots.push_back(spot_at(x + way, way));
+    for (const Vec3& x : found.corners_b) spots.push_back(spot_at(x, way));
   }
 
   [[nodiscard]] double step_beyond(const Cube& cube) const {
@@ -298,7 +270,7 @@ class TranslationCover {
   /// Takes a way of the direction and an outside length, or a shorter one, if that separates.
   bool shorten(const Vec3& unit, double length, double overlaps) {
     constexpr int kHalvings = 8;
-    const auto separates = [&](double some) { return contact_after(some * unit).contact == ContactClass::separated; };
+    const auto separates = [&](double some) { return meeting_after(some * unit).contact == ContactClass::separated; };
     double high = length, low = outside(overlaps);
     if (!(high > low) || !separates(high)) return false;
     for (int i = 0; i < kHalvings; ++i) {
@@ -313,10 +285,11 @@ class TranslationCover {
     return true;
   }
 
-  const OverlapQuestion& question_;
+  const CoverQuestion& question_;
   const PosedSolids& solids_;
   SolidDepth& out_;
-  const DepthProbe in_a_, in_b_;
+  const DepthProbe in_a_;
+  StandingBody& standing_;
   const TriangleBox box_a_, box_b_;
   double factor_;  ///< of the bracket's ends; a little less than asked, for what is rounded
   std::priority_queue<Cube> queue_;
@@ -326,6 +299,10 @@ class TranslationCover {
 
 }  // namespace
 
-bool narrow_by_cover(const OverlapQuestion& question, SolidDepth& out) { return TranslationCover(question, out).run(); }
+std::unique_ptr<StandingBody> standing_solid(const PosedSolid& a, const PosedSolid& b, const PosedSolids& solids) {
+  return std::make_unique<StandingSolid>(a, b, solids);
+}
+
+bool narrow_by_cover(const CoverQuestion& question, SolidDepth& out) { return TranslationCover(question, out).run(); }
 
 }  // namespace pd::detail

@@ -1,5 +1,5 @@
 /// @file
-/// Class, distance and depth of two solids that closed meshes bound.
+/// Class, distance and depth of two solids that closed meshes bound, or of a solid and a convex shape.
 ///
 /// The class is exact on the stored numbers and poses. Solids are overlapping when their interiors meet, touching when
 /// they have boundary points alone in common, separated else. A slot of zero width belongs to the forbidden placements
@@ -10,6 +10,7 @@
 
 #include "pd/depth/depth_answer.hpp"
 #include "pd/numeric/expected.hpp"
+#include "pd/shape/convex_shape.hpp"
 #include "pd/shape/mesh_solid.hpp"
 #include "pd/shape/pose.hpp"
 
@@ -71,5 +72,23 @@ struct SolidDepth : PenetrationDepth {
 /// @return bad_value ("delta", "max_points").
 [[nodiscard]] Expected<SolidDepth> penetration_depth(const PosedSolid& a, const PosedSolid& b, Scratch& scratch,
                                                      const SolidSettings& settings = {});
+
+/// Depth or distance of a solid and a convex shape of any kind: curved, or swept by a margin. The solid moves.
+///
+/// A polytope without a margin is asked as a solid, as above. Other shapes meet the solid where they meet one of its
+/// triangles, or lie inside of it: class and distance are those of the convex `penetration_depth`, as exact as there.
+/// Where the two overlap, the points of the settings are the budget. `face_b` is -1.
+/// Time: a convex query for each triangle that the shape comes near; where they overlap, some microseconds a point.
+/// @return bad_value as above; not_full_dimensional for a flat polytope without a margin; out_of_range for poses
+/// farther apart than numbers reach.
+[[nodiscard]] Expected<SolidDepth> penetration_depth(const PosedSolid& a, const PosedShape& b, Scratch& scratch,
+                                                     const SolidSettings& settings = {});
+
+/// A shape that moves, beside a solid that stays.
+[[nodiscard]] Expected<SolidDepth> penetration_depth(const PosedShape& a, const PosedSolid& b, Scratch& scratch,
+                                                     const SolidSettings& settings = {});
+
+/// The class alone. @return as `penetration_depth`
+[[nodiscard]] Expected<ContactClass> classify(const PosedSolid& a, const PosedShape& b, Scratch& scratch);
 
 }  // namespace pd
