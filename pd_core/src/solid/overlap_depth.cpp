@@ -106,10 +106,10 @@ void set_witnesses(const PenetrationDepth& after_the_move, SolidDepth& out) {
 }  // namespace
 
 void set_depth(const OverlapQuestion& question, Scratch& scratch, SolidDepth& out) {
-  const auto& [a, b, solids, settings] = question;
+  const PosedSolid &a = question.a, &b = question.b;
   const ConvexShape hull_a = *ConvexPolytope::from_points(a.solid->vertices());
   const ConvexShape hull_b = *ConvexPolytope::from_points(b.solid->vertices());
-  Bracketing bracket(settings, scratch, out);
+  Bracketing bracket(question.settings, scratch, out);
   bracket.begin({&hull_a, a.pose}, {&hull_b, b.pose});
   const auto told_by_parts = [&] {
     const SolidPartsLimits limits{.parts = kMostExactPairs, .polygons = 10'000};
@@ -121,8 +121,8 @@ void set_depth(const OverlapQuestion& question, Scratch& scratch, SolidDepth& ou
     return parts_a->count() * parts_b->count() <= most && bracket.narrow_by_parts(*parts_a, *parts_b);
   };
   if (!bracket.reached() && !told_by_parts()) {
-    const auto standing = standing_solid(a, b, solids);
-    if (narrow_by_cover({solids, *standing, settings}, out)) {
+    const auto standing = standing_solid(a, b, question.solids);
+    if (narrow_by_cover({question.solids, *standing, question.settings}, out)) {
       const Pose moved = placed_at(a.pose, a.pose.translation() + out.translation);
       const PosedSolids apart(*a.solid, moved, *b.solid, b.pose);
       if (contact_of(apart).contact == ContactClass::separated) {
