@@ -2,9 +2,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <limits>
+
+#include "oracle/judging.hpp"
 
 namespace pd::oracle {
 
@@ -12,19 +12,6 @@ namespace {
 
 /// Depths below which `Bracket::tightest` may miss the shortest translation of doubles by some steps more.
 constexpr double kSearchedBlindly = 0x1p-960;
-
-std::string text(const char* format, double a, double b) {
-  std::array<char, 200> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), format, a, b);
-  return buffer.data();
-}
-
-/// `Bracket::certified` promises this width, in units of S.
-constexpr double kCertifiedWidth = 2e-14;
-
-double ulp_of(double x) {
-  return x > 0 ? std::ldexp(1.0, std::ilogb(x) - 52) : std::numeric_limits<double>::denorm_min();
-}
 
 /// |v| of a double vector, exactly.
 ExactLength exact_length(const Vec3& v) {

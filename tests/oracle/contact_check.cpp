@@ -2,22 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "oracle/answer_check.hpp"
+#include "oracle/judging.hpp"
 #include "pd/shape/convex_polytope.hpp"
 
 namespace pd::oracle {
-
-namespace {
-
-std::string text(const char* format, double x, double y, double z = 0) {
-  char buffer[200];
-  std::snprintf(buffer, sizeof buffer, format, x, y, z);
-  return buffer;
-}
-
-}  // namespace
 
 SignedInterval signed_distance(const PenetrationDepth& answer) {
   switch (answer.contact) {

@@ -5,26 +5,15 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <numeric>
 
 #include "oracle/exact_sum.hpp"
+#include "oracle/judging.hpp"
 
 namespace pd::oracle::grid {
 
 namespace {
-
-std::string text(const char* format, double a, double b) {
-  std::array<char, 200> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), format, a, b);
-  return buffer.data();
-}
-
-/// `Bracket::certified` promises this width, in units of S.
-constexpr double kCertifiedWidth = 2e-14;
-
-double ulp_of(double x) { return x > 0 ? std::ldexp(1.0, std::ilogb(x) - 52) : 0; }
 
 Vec3 translation_of(const Placement& at) {
   return {static_cast<double>(at.translation[0]), static_cast<double>(at.translation[1]),

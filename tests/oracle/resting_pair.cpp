@@ -1,8 +1,8 @@
 #include "oracle/resting_pair.hpp"
 
 #include <cmath>
-#include <cstdio>
 
+#include "oracle/judging.hpp"
 #include "scenes/single_precision.hpp"
 
 namespace pd::oracle {
@@ -117,11 +117,6 @@ int compare_with_depth(double x, const Verdict& core, const Scaled& margins) {
 
 std::string check_rounded(const JudgedPair& pair, double margin_a, double margin_b, const PenetrationDepth& answer,
                           Bracket bracket) {
-  const auto text = [](const char* format, double x, double y) {
-    char buffer[120];
-    std::snprintf(buffer, sizeof buffer, format, x, y);
-    return std::string(buffer);
-  };
   const Verdict& core = pair.verdict();
   if (core.contact == ContactClass::separated && !core.distance_known) return "oracle: distance not certified";
   const Scaled margins = to_scaled(margin_a) + to_scaled(margin_b);
