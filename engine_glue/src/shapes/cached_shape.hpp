@@ -29,6 +29,11 @@ struct CachedShape {
   std::atomic<bool> used{false};           ///< found since the cache last looked for entries to drop
   std::atomic<std::uint64_t> compared{0};  ///< the stamp under which all points were last compared
 
+  /// Whether the shape has this fingerprint under this stamp; takes note of the stamp if it has.
+  bool has_content(std::uint64_t now, std::uint64_t stamp) {
+    if (fingerprint == now) compared.store(stamp, std::memory_order_relaxed);
+    return fingerprint == now;
+  }
   /// The body as Bullet's contacts take it beside another one: two boxes are sharp. Requires a body.
   [[nodiscard]] const ConvexShape& beside(const CachedShape& other) const {
     return sharp && other.sharp ? *sharp : *body;

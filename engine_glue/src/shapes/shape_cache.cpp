@@ -52,16 +52,11 @@ std::shared_ptr<detail::CachedShape> BulletShapeCache::find(const btConvexShape&
     if (found != places_.end() && (*found->second)->signature == signature) {
       known = *found->second;
       known->used.store(true, std::memory_order_relaxed);
-      if (stamp != 0 && known->compared.load(std::memory_order_relaxed) == stamp) {
-        return known;
-      }
+      if (stamp != 0 && known->compared.load(std::memory_order_relaxed) == stamp) return known;
     }
   }
   const std::uint64_t fingerprint = shape_fingerprint(shape);
-  if (known && known->fingerprint == fingerprint) {
-    known->compared.store(stamp, std::memory_order_relaxed);
-    return known;
-  }
+  if (known && known->has_content(fingerprint, stamp)) return known;
   auto entry = make_entry(shape, fingerprint);
   entry->signature = signature;
   entry->compared.store(stamp, std::memory_order_relaxed);

@@ -20,13 +20,13 @@ struct StepShapes {
 
   /// Brings up to date what a shape that is no triangle was converted to. `known`: as found earlier, or null.
   void refresh(const btConvexShape& shape, std::shared_ptr<CachedShape>& known) const {
-    // The signature of a box is all that there is to compare.
-    const auto compared = [&] {
+    // The signature of a box is all that there is to compare. Others are compared without a look into the cache.
+    const auto same = [&] {
       return shape.getShapeType() == BOX_SHAPE_PROXYTYPE ||
-             (stamp != 0 && known->compared.load(std::memory_order_relaxed) == stamp);
+             (stamp != 0 && known->compared.load(std::memory_order_relaxed) == stamp) ||
+             known->has_content(shape_fingerprint(shape), stamp);
     };
-    const bool current = known && known->source == &shape && compared() && known->signature == shape_signature(shape);
-    if (!current) known = find(shape);
+    if (!known || known->source != &shape || known->signature != shape_signature(shape) || !same()) known = find(shape);
   }
 };
 
