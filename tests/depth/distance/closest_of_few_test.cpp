@@ -24,8 +24,7 @@ namespace detail {
 
 NearestOfFew nearest_of_few_baseline(const FewVertices& bodies, const VertexPair* start, int count,
                                      const NearestGoal& goal);
-NearestOfFew nearest_on_simplex_baseline(const FewVerticesInFrames& bodies, const VertexPair* simplex, int count,
-                                         bool with_support);
+NearestOfFew nearest_on_simplex_baseline(const LanePoint* corners, int count);
 SupportOfFew support_of_few_baseline(const FewVerticesInFrames& bodies, const double (&direction)[3]);
 bool add_to_face_baseline(NearestLaneFace& face, const LanePoint& s);
 
@@ -178,18 +177,19 @@ TEST_P(FewVerticesApart, KernelsGiveTheSameBitsOnEveryInstructionSet) {
     const Vec3& t = difference.offset();
     const FewVertices few{difference.posed_a(), difference.posed_b(), {t.x(), t.y(), t.z()}};
     const FewVerticesInFrames in_frames{arrays_of(bodies.a), arrays_of(bodies.b), difference.rotation_a().data(),
-                                        difference.rotation_b().data(), t.data()};
+                                        difference.rotation_b().data()};
     VertexPair start[4];
-    for (VertexPair& p : start) {
+    LanePoint corners[4];
+    for (int k = 0; k < 4; ++k) {
       const DifferenceVertex v = any_vertex(difference);
-      p = {v.a, v.b};
+      start[k] = {v.a, v.b};
+      corners[k] = {v.x.x(), v.x.y(), v.x.z(), v.a, v.b};
     }
     const NearestGoal goal{1e-15 * difference.reach(), 1e3, 0};
     for (int count = 1; count <= 4; ++count) {
       expect_same_bits(nearest_of_few(few, start, count, goal), nearest_of_few_baseline(few, start, count, goal));
       if (count == 4) continue;
-      expect_same_bits(nearest_on_simplex(in_frames, start, count, true),
-                       nearest_on_simplex_baseline(in_frames, start, count, true));
+      expect_same_bits(nearest_on_simplex(corners, count), nearest_on_simplex_baseline(corners, count));
     }
     const Vec3 d = vector();
     const SupportOfFew x = support_of_few(in_frames, {d.x(), d.y(), d.z()});

@@ -1,9 +1,9 @@
 #include "depth/distance/closest_of_few.hpp"
 
-#include <algorithm>
 #include <limits>
 
 #include "depth/distance/nearest_of_few.hpp"
+#include "depth/distance/simplex_lanes.hpp"
 
 namespace pd::detail {
 
@@ -13,11 +13,6 @@ namespace {
 /// their body's radius, two compared products by 3u each, the offset by u, the sum of a vertex of P by 2u, its product
 /// by 3u and the normal's length by 4u.
 constexpr double kScannedPlaneError = 24 * kUnitRoundoff;
-
-FewVerticesInFrames in_frames(const PolytopeDifference& difference) {
-  return {arrays_of(difference.a()), arrays_of(difference.b()), difference.rotation_a().data(),
-          difference.rotation_b().data(), difference.offset().data()};
-}
 
 bool is_narrow(const PolytopeDifference& difference, const ClosestPoint& r, double relative,
                const BracketWidth& width) {
@@ -80,18 +75,25 @@ std::optional<PlaneOfFew> plane_of_few(const PolytopeDifference& difference, con
 
 ClosestPoint confirm_closest_point(const PolytopeDifference& difference, std::span<const VertexPair> simplex,
                                    double relative, const BracketWidth& width) {
-  const bool few = !difference.climbs();
-  NearestOfFew found = nearest_on_simplex(in_frames(difference), simplex.data(), static_cast<int>(simplex.size()), few);
-  if (!few) {
-    const Vec3 direction(found.direction[0], found.direction[1], found.direction[2]);
-    DifferenceVertex corners[3];
-    for (int i = 0; i < 3; ++i) {
-      const VertexPair& v = simplex[std::min<std::size_t>(static_cast<std::size_t>(i), simplex.size() - 1)];
-      corners[i] = {Vec3::Zero(), v.a, v.b};
-    }
+  DifferenceVertex corners[3];
+  const int count = static_cast<int>(simplex.size());
+  difference.posed_vertices(simplex.data(), count, corners);
+  LanePoint points[3];
+  for (int i = 0; i < count; ++i) {
+    points[i] = {corners[i].x.x(), corners[i].x.y(), corners[i].x.z(), corners[i].a, corners[i].b};
+  }
+  NearestOfFew found = nearest_on_simplex(points, count);
+  const Vec3 direction(found.direction[0], found.direction[1], found.direction[2]);
+  if (difference.climbs()) {
+    for (int i = count; i < 3; ++i) corners[i] = corners[count - 1];
     DifferenceVertex s;
     if (!difference.confirm_support(direction, s, corners)) return {};
     found.height = -s.x.dot(direction);
+  } else {
+    const SupportOfFew s = support_of_few({arrays_of(difference.a()), arrays_of(difference.b()),
+                                           difference.rotation_a().data(), difference.rotation_b().data()},
+                                          found.direction);
+    found.height = -((Vec3(s.on_b) - Vec3(s.on_a)) + difference.offset()).dot(direction);
   }
   return closest_point(difference, found, distance_errors(difference), relative, width);
 }

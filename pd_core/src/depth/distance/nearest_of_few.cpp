@@ -27,13 +27,6 @@ PD_INLINE Direction into_frame(const double* r, const Direction& d) {
   return {r[0] * d.x + r[1] * d.y + r[2] * d.z, r[3] * d.x + r[4] * d.y + r[5] * d.z,
           r[6] * d.x + r[7] * d.y + r[8] * d.z};
 }
-PD_INLINE LanePoint posed_vertex(const FewVerticesInFrames& bodies, int a, int b) {
-  const Direction on_a = turned(bodies.rotation_a, bodies.a.x[a], bodies.a.y[a], bodies.a.z[a]);
-  const Direction on_b = turned(bodies.rotation_b, bodies.b.x[b], bodies.b.y[b], bodies.b.z[b]);
-  return {(on_b.x - on_a.x) + bodies.offset[0], (on_b.y - on_a.y) + bodies.offset[1],
-          (on_b.z - on_a.z) + bodies.offset[2], a, b};
-}
-
 PD_INLINE VertexPair farthest_in_frames(const FewVerticesInFrames& bodies, const Direction& d) {
   return {farthest(bodies.a, into_frame(bodies.rotation_a, {-d.x, -d.y, -d.z})),
           farthest(bodies.b, into_frame(bodies.rotation_b, d))};
@@ -104,26 +97,18 @@ PD_CLONES NearestOfFew nearest_of_few(const FewVertices& bodies, const VertexPai
 
 PD_CLONES bool add_to_face(NearestLaneFace& face, const LanePoint& s) { return add_vertex(face, s); }
 
-PD_CLONES NearestOfFew nearest_on_simplex(const FewVerticesInFrames& bodies, const VertexPair* simplex, int count,
-                                          bool with_support) {
+NearestOfFew nearest_on_simplex(const LanePoint* corners, int count) {
   NearestOfFew out;
   NearestLaneFace face{};
-  LanePoint p[3];
-  for (int i = 0; i < count; ++i) p[i] = posed_vertex(bodies, simplex[i].a, simplex[i].b);
   // What most frames find again, else from the start.
-  const bool inside = count == 3   ? take_triangle(face, p[0], p[1], p[2])
-                      : count == 2 ? take_edge(face, p[0], p[1])
+  const bool inside = count == 3   ? take_triangle(face, corners[0], corners[1], corners[2])
+                      : count == 2 ? take_edge(face, corners[0], corners[1])
                                    : false;
   if (!inside) {
-    for (int i = 0; i < count; ++i) (void)add_vertex(face, p[i]);
+    for (int i = 0; i < count; ++i) (void)add_to_face(face, corners[i]);
   }
   put_face(out, face);
-  const Direction& d = face.toward;
-  put(out.direction, d.x, d.y, d.z);
-  if (!with_support) return out;
-  const VertexPair s = farthest_in_frames(bodies, d);
-  out.supports = 1;
-  put_plane(out, posed_vertex(bodies, s.a, s.b), d);
+  put(out.direction, face.toward.x, face.toward.y, face.toward.z);
   return out;
 }
 

@@ -23,7 +23,6 @@ struct FewVerticesInFrames {
   VertexArrays b;
   const double* rotation_a;
   const double* rotation_b;
-  const double* offset;
 };
 
 struct NearestGoal {
@@ -58,11 +57,8 @@ struct LanePoint;
 /// `add_vertex` (simplex_lanes.hpp) for a search whose supports come from elsewhere.
 bool add_to_face(NearestLaneFace& face, const LanePoint& s);
 
-/// The nearest point of one to three vertices of P, `direction` from there to the origin, and with the support there
-/// also `height`, which tells whether the point is P's nearest, too.
-/// @param with_support  for bodies of few vertices; the rest is for any.
-NearestOfFew nearest_on_simplex(const FewVerticesInFrames& bodies, const VertexPair* simplex, int count,
-                                bool with_support);
+/// The nearest point of one to three vertices of P, for bodies of any size, and `direction` from there to the origin.
+NearestOfFew nearest_on_simplex(const LanePoint* corners, int count);
 
 /// The vertices of A and B farthest in a direction of P, of any length: turned, but not moved.
 struct SupportOfFew {

@@ -96,8 +96,8 @@ class BeyondQuery {
     const double length = start.norm();
     if (!is_ordinary(reach) || !(length > 0)) return false;
     const Vec3 unit = start / length;
-    const SupportOfFew s = support_of_few({arrays_of(a), arrays_of(b), turn_a.data(), turn_b.data(), offset.data()},
-                                          {unit.x(), unit.y(), unit.z()});
+    const SupportOfFew s =
+        support_of_few({arrays_of(a), arrays_of(b), turn_a.data(), turn_b.data()}, {unit.x(), unit.y(), unit.z()});
     ++out_.statistics.support_calls;
     const BodyPoints points{Vec3(s.on_a[0], s.on_a[1], s.on_a[2]), Vec3(s.on_b[0], s.on_b[1], s.on_b[2]) + offset};
     // As `support_plane_error`.
