@@ -138,16 +138,42 @@ TEST_F(CSolids, TheBudgetIsTheCallers) {
               *penetration_depth(PosedSolid{&twin, Pose()}, PosedSolid{&twin, pose}, scratch, {.max_points = 3000}));
 }
 
+/// Curved and swept shapes stand beside any solid, also one whose parts no doubles hold.
+TEST_F(CSolids, ConvexShapesBesideSolids) {
+  const ConvexShape ball = *ConvexShape::sphere(0.5);
+  const Shape c_ball = make_shape(context_, &pdepth_sphere, 0.5);
+  Scratch scratch;
+  int contacts[3] = {};
+  for (const Mesh& mesh : {test::mesh_of(kHook), turned_hook()}) {
+    const Shape hook = solid(context_, mesh);
+    const MeshSolid twin = *MeshSolid::from_faces(mesh.view());
+    for (const double height : {0.5, 1.25, 1.5, 2.5}) {
+      const Pose pose = *Pose::from_matrix(Mat3::Identity(), Vec3(0.5, height, 0.5));
+      const pdepth_answer answer = depth(hook.get(), c_ball.get(), pose);
+      expect_bits(answer, *penetration_depth(PosedSolid{&twin, Pose()}, PosedShape{&ball, pose}, scratch));
+      ++contacts[answer.contact];
+      if (answer.contact != PDEPTH_SEPARATED) continue;
+      EXPECT_EQ(answer.feature_a.part, PDEPTH_PART_MESH);
+      EXPECT_EQ(answer.feature_b.kind, PDEPTH_FEATURE_NONE);
+    }
+    // The same pair, the ball first.
+    pdepth_question question = question_of(c_ball.get(), hook.get());
+    question.pose_a = pose_of(*Pose::from_matrix(Mat3::Identity(), Vec3(0.5, 1.25, 0.5)));
+    auto answer = sized<pdepth_answer>();
+    ASSERT_EQ(pdepth_depth(context_.get(), &question, &answer), PDEPTH_OK) << error_of(context_);
+    EXPECT_EQ(answer.contact, PDEPTH_OVERLAPPING);
+    EXPECT_EQ(answer.bracket_reached, 1);
+  }
+  EXPECT_GT(contacts[PDEPTH_SEPARATED], 0);
+  EXPECT_GT(contacts[PDEPTH_TOUCHING], 0);
+  EXPECT_GT(contacts[PDEPTH_OVERLAPPING], 3);
+}
+
 TEST_F(CSolids, PartsServeWhereTheMeshCannot) {
   const Mesh mesh = test::mesh_of(kHook);
   const Shape hook = solid(context_, mesh);
   const Shape ball = make_shape(context_, &pdepth_sphere, 0.5);
   const Compound parts = SolidParts::from_solid(*MeshSolid::from_faces(mesh.view()))->inner();
-  Scratch scratch;
-  const Compound twin(*ConvexShape::sphere(0.5));
-  const Pose pose = *Pose::from_matrix(Mat3::Identity(), Vec3(0.5, 1.25, 0.5));
-  expect_bits(depth(hook.get(), ball.get(), pose),
-              *penetration_depth(PosedCompound{&parts, Pose()}, PosedCompound{&twin, pose}, scratch));
   const Shape swept = make_shape(context_, &pdepth_with_margin, hook.get(), 0.25);
   EXPECT_EQ(depth(swept.get(), ball.get(), *Pose::from_matrix(Mat3::Identity(), Vec3(-1, 0.5, 0.5))).distance, 0.25);
   const pdepth_part part{hook.get(), {PDEPTH_POSE_TRANSLATION, 0, {0, 0, 5}}};
@@ -164,7 +190,7 @@ TEST_F(CSolids, PartsServeWhereTheMeshCannot) {
   EXPECT_EQ(info.parts, static_cast<std::int32_t>(parts.parts().size()));
 
   const Shape turned = solid(context_, turned_hook());
-  const pdepth_question question = question_of(turned.get(), ball.get());
+  const pdepth_question question = question_of(turned.get(), whole.get());
   auto answer = sized<pdepth_answer>();
   EXPECT_EQ(pdepth_depth(context_.get(), &question, &answer), PDEPTH_UNSUPPORTED);
   EXPECT_NE(error_of(context_).find("question.a"), std::string::npos) << error_of(context_);

@@ -160,7 +160,7 @@ pdepth_status pdepth_hull_of_spheres(pdepth_context* context, const double* sphe
 /// Errors: as `pdepth_convex_hull`, and bad_faces, not_closed, limit_exceeded; the message begins with the fault
 /// (open_edge, flipped_face, not_manifold, self_crossing, inside_out, not_planar, degenerate_face). Time O(n log n).
 ///
-/// Depth and apart, of solids and of a solid and a convex polytope without margin, ask the mesh itself. All else needs
+/// Depth and apart, of solids and of a solid and a convex shape, ask the mesh itself. All else needs
 /// the solid as convex parts, which its first such query cuts: unsupported where no doubles hold their corners,
 /// limit_exceeded above 512 parts or 20,000 pieces of faces.
 pdepth_status pdepth_mesh_solid(pdepth_context* context, const pdepth_faces* mesh, int32_t turn_faces,
@@ -239,7 +239,7 @@ typedef struct pdepth_settings {
   double delta;
   double contact_tolerance;  ///< for PDEPTH_BRACKET_CONTACT: an interval of this width is narrow enough; >= 0
   uint64_t seed;             ///< the decomposition's random order: times depend on it, answers do not
-  int64_t max_points;        ///< budget of the bracket of two solids, 5 to 15 us a point; 0: 500,000; >= 0
+  int64_t max_points;        ///< budget of a bracket of solids, 5 to 15 us a point; 0: 500,000; >= 0
 } pdepth_settings;
 
 /// The memory of one pair of bodies from frame to frame, opaque. It makes the next answer quicker.

@@ -55,19 +55,22 @@ UnionDepth union_depth(const Question& question, Workspace& space) {
                   "question");
 }
 
-/// A body as a solid: its own mesh, or that of a convex polytope.
+/// A body of a question about solids: its own mesh, a convex polytope's, or another convex shape.
 class AsSolid {
  public:
-  explicit AsSolid(const pdepth_shape& shape) : solid_(shape.solid ? &shape.solid->mesh() : nullptr) {
-    const ConvexShape* const convex = shape.convex();
-    if (convex == nullptr || convex->polytope() == nullptr || convex->margin() != 0) return;
-    if (Expected<MeshSolid> made = MeshSolid::from_polytope(*convex->polytope())) {
+  AsSolid(const pdepth_shape& shape, const PosedShape& posed)
+      : solid_(shape.solid ? &shape.solid->mesh() : nullptr), convex_(shape.convex()), pose_(posed.pose) {
+    if (convex_ == nullptr || convex_->polytope() == nullptr || convex_->margin() != 0) return;
+    if (Expected<MeshSolid> made = MeshSolid::from_polytope(*convex_->polytope())) {
       solid_ = &made_.emplace(std::move(made).value());
     }
   }
   AsSolid(const AsSolid&) = delete;
   AsSolid& operator=(const AsSolid&) = delete;
-  [[nodiscard]] const MeshSolid* get() const { return solid_; }
+  [[nodiscard]] bool is_union() const { return solid_ == nullptr && convex_ == nullptr; }
+  [[nodiscard]] bool is_solid() const { return solid_ != nullptr; }
+  [[nodiscard]] PosedSolid posed_solid() const { return {solid_, pose_}; }
+  [[nodiscard]] PosedShape posed_shape() const { return {convex_, pose_}; }
   /// @param face  of a SolidDepth. Faces of polytopes are their facets.
   [[nodiscard]] pdepth_feature feature(std::int32_t face) const {
     if (face < 0) return {PDEPTH_FEATURE_NONE, 0, -1, -1};
@@ -77,18 +80,23 @@ class AsSolid {
  private:
   std::optional<MeshSolid> made_;
   const MeshSolid* solid_;
+  const ConvexShape* convex_;
+  const Pose& pose_;
 };
 
-/// Two meshes, or a mesh and a polytope. False where one of the bodies is no mesh, so that nothing was asked.
+/// Two meshes, or a mesh and a convex shape. False where neither body is a mesh or one is a union, so that nothing was
+/// asked.
 bool answered_by_meshes(const Question& question, Workspace& space, pdepth_answer& out) {
   if (!question.a.solid && !question.b.solid) return false;
-  const AsSolid a(question.a), b(question.b);
-  if (a.get() == nullptr || b.get() == nullptr) return false;
+  const AsSolid a(question.a, question.posed_a), b(question.b, question.posed_b);
+  if (a.is_union() || b.is_union()) return false;
   require_automatic(question);
-  const SolidDepth found =
-      value_of(penetration_depth(PosedSolid{a.get(), question.posed_a.pose}, PosedSolid{b.get(), question.posed_b.pose},
-                                 space.scratch, question.settings.of_solids),
-               "question");
+  const auto depth_of = [&](const auto& of_a, const auto& of_b) {
+    return value_of(penetration_depth(of_a, of_b, space.scratch, question.settings.of_solids), "question");
+  };
+  const SolidDepth found = !b.is_solid()   ? depth_of(a.posed_solid(), b.posed_shape())
+                           : !a.is_solid() ? depth_of(a.posed_shape(), b.posed_solid())
+                                           : depth_of(a.posed_solid(), b.posed_solid());
   write_depth(found, out);
   out.feature_a = a.feature(found.face_a);
   out.feature_b = b.feature(found.face_b);

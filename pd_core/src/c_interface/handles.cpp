@@ -102,7 +102,7 @@ const pd::Compound& pdepth_shape::whole(const char* argument) const {
   if (!parts.exact()) {
     pd::c_interface::refuse(PDEPTH_UNSUPPORTED,
                             "this needs the solid as convex parts, whose corners no doubles hold here; depth and apart "
-                            "of solids and convex polytopes need none",
+                            "of solids and convex shapes need none",
                             argument);
   }
   return parts.inner();
