@@ -165,13 +165,22 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Thr
   if (!is_finite(pose_a) || !is_finite(pose_b)) return true;
   const btCollisionShape& shape_a = *a.getCollisionShape();
   const btCollisionShape& shape_b = *b.getCollisionShape();
-  children_near(a, box_of(shape_b, pose_a.inverseTimes(pose_b)), box_of(shape_b, pose_b), threshold, children_a_);
+  const ChildBox box_a = box_of(shape_a, pose_a), box_b = box_of(shape_b, pose_b);
+  // Bullet's broadphase widens boxes, so that many pairs of boxes that overlap end here, and most others below.
+  children_a_.clear();
   children_b_.clear();
-  if (!children_a_.empty()) {
-    children_near(b, box_of(shape_a, pose_b.inverseTimes(pose_a)), box_of(shape_a, pose_a), threshold, children_b_);
+  if (!apart(box_a, box_b, threshold)) {
+    children_near(a, box_of(shape_b, pose_a.inverseTimes(pose_b)), box_b, threshold, children_a_);
+    if (!children_a_.empty()) {
+      children_near(b, box_of(shape_a, pose_b.inverseTimes(pose_a)), box_a, threshold, children_b_);
+    }
   }
-  // Most pairs of boxes that overlap end here.
-  if (children_b_.empty()) children_a_.clear();
+  if (children_b_.empty()) {
+    memories_.end(memory.pieces);
+    memory.union_pause = memory.union_refusals = 0;
+    memory.union_way.setZero();
+    return true;
+  }
   if (!all_convex(children_a_) || !all_convex(children_b_)) return false;
   buffers.near.begin_pair(stamp);
   move(shape_a, children_a_, stamp, core, buffers, memory.children[0]);
