@@ -41,7 +41,7 @@ bool apart(const ChildBox& a, const ChildBox& b, btScalar reach) {
   return false;
 }
 
-void children_near(const btCollisionObjectWrapper& wrapper, const ChildBox& local, const ChildBox& world,
+void children_near(const btCollisionObjectWrapper& wrapper, const btCollisionObjectWrapper& other, const ChildBox& box,
                    btScalar reach, std::vector<Child>& children) {
   children.clear();
   const btCollisionShape& shape = *wrapper.getCollisionShape();
@@ -56,10 +56,11 @@ void children_near(const btCollisionObjectWrapper& wrapper, const ChildBox& loca
     if (is_empty(*compound.getChildShape(i))) return;
     Child child{compound.getChildShape(i), pose * compound.getChildTransform(i), i, {}};
     child.box = box_of(*child.shape, child.pose);
-    if (apart(child.box, world, reach)) return;
+    if (apart(child.box, box, reach)) return;
     child.told_as = number_for_hosts(flat, i);
     children.push_back(child);
   };
+  const ChildBox local = box_of(*other.getCollisionShape(), pose.inverseTimes(other.getWorldTransform()));
   const btVector3 extra(reach, reach, reach);
   for_each_child_meeting(compound, btDbvtVolume::FromMM(local.lower - extra, local.upper + extra), visit);
   // The tree's order depends on its history.

@@ -28,9 +28,9 @@ ChildBox box_of(const btCollisionShape& shape, const btTransform& pose);
 
 bool apart(const ChildBox& a, const ChildBox& b, btScalar reach);
 
-/// The children whose boxes come within `reach` of a box (`local`: in the compound's frame), by number, but empty ones.
-/// Of a shape that is no compound: itself.
-void children_near(const btCollisionObjectWrapper& wrapper, const ChildBox& local, const ChildBox& world,
+/// The children whose boxes come within `reach` of another body's, `box` in the world and its box in the compound's
+/// frame, by number, but empty ones. Of a shape that is no compound: itself.
+void children_near(const btCollisionObjectWrapper& wrapper, const btCollisionObjectWrapper& other, const ChildBox& box,
                    btScalar reach, std::vector<Child>& children);
 
 /// The children that the host lets meet `other` (`gCompoundChildShapePairCallback`), wherever they are and without

@@ -57,11 +57,8 @@ class NearChildren final : public NearSides {
   };
   bool collect(const btCollisionObjectWrapper& body, const btCollisionObjectWrapper& other, double reach, Held& held,
                NearSide& side) const {
-    const btTransform& pose = body.getWorldTransform();
-    const btTransform& other_pose = other.getWorldTransform();
-    const btCollisionShape& other_shape = *other.getCollisionShape();
-    children_near(body, box_of(other_shape, pose.inverseTimes(other_pose)), box_of(other_shape, other_pose),
-                  static_cast<btScalar>(reach), held.children);
+    const ChildBox box = box_of(*other.getCollisionShape(), other.getWorldTransform());
+    children_near(body, other, box, static_cast<btScalar>(reach), held.children);
     held.shapes.clear();
     side = {};
     for (const Child& child : held.children) {
@@ -170,10 +167,8 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Thr
   children_a_.clear();
   children_b_.clear();
   if (!apart(box_a, box_b, threshold)) {
-    children_near(a, box_of(shape_b, pose_a.inverseTimes(pose_b)), box_b, threshold, children_a_);
-    if (!children_a_.empty()) {
-      children_near(b, box_of(shape_a, pose_b.inverseTimes(pose_a)), box_a, threshold, children_b_);
-    }
+    children_near(a, b, box_b, threshold, children_a_);
+    if (!children_a_.empty()) children_near(b, a, box_a, threshold, children_b_);
   }
   if (children_b_.empty()) {
     memories_.end(memory.pieces);

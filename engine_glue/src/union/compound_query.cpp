@@ -78,12 +78,10 @@ class Query {
     const btTransform& pose_a = a_.getWorldTransform();
     const btTransform& pose_b = b_.getWorldTransform();
     if (!is_finite(pose_a) || !is_finite(pose_b)) return;
-    const btCollisionShape& shape_a = *a_.getCollisionShape();
-    const btCollisionShape& shape_b = *b_.getCollisionShape();
     const btScalar within = result_.m_closestPointDistanceThreshold;
-    children_near(a_, box_of(shape_b, pose_a.inverseTimes(pose_b)), box_of(shape_b, pose_b), within, near_a_.children);
+    children_near(a_, b_, box_of(*b_.getCollisionShape(), pose_b), within, near_a_.children);
     if (near_a_.children.empty()) return;
-    children_near(b_, box_of(shape_a, pose_b.inverseTimes(pose_a)), box_of(shape_a, pose_a), within, near_b_.children);
+    children_near(b_, a_, box_of(*a_.getCollisionShape(), pose_a), within, near_b_.children);
     if (near_b_.children.empty()) return;
     near_a_.shapes.resize(near_a_.children.size());
     near_b_.shapes.resize(near_b_.children.size());
