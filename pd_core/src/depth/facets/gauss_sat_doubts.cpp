@@ -1,5 +1,3 @@
-#include <bit>
-
 #include "depth/facets/gauss_sat_lanes.hpp"
 
 namespace pd::detail::gauss_sat {
@@ -24,64 +22,102 @@ PD_INLINE void take_vectors(EdgeVectors<Size>& out, const KeptEdges<Size>& kept,
   }
 }
 
+/// By facet of one body: the kept edges of the other that may fall along it, as bits, and those that may rise.
 template <class Size>
-PD_INLINE void store_words(Sides<Size>& out, int f, const WideBits& bits) {
-  for (int lane = 0; lane < kLanes; ++lane) {
-    out.low[f + lane] = static_cast<std::uint32_t>(bits[lane]);
-    if constexpr (!kIsSmall<Size>) out.high[f + lane] = static_cast<std::uint32_t>(bits[lane] >> Sides<Size>::kHalf);
-  }
-}
+struct FineSides {
+  alignas(32) std::uint64_t falling[Size::kFacets];
+  alignas(32) std::uint64_t rising[Size::kFacets];
+};
 
-/// @param open  the rises within `error`
+/// Doubles each word and adds the flag as its last bit.
+PD_INLINE void append(Flags& words, const Flags& flags) { words = words + words - flags; }
+
+/// An edge that rises or falls by no more than `error` may do either.
+/// @param facets  the planes of so many are looked at
 template <class Size>
-PD_INLINE void tell_precisely(Sides<Size>& out, Sides<Size>& open, const KeptEdges<Size>& kept,
-                              const VertexArrays& posed, const Planes<Size>& along, double error, bool backwards) {
+PD_INLINE void tell_precisely(FineSides<Size>& out, const KeptEdges<Size>& kept, const VertexArrays& posed,
+                              const Planes<Size>& along, int facets, double error, bool backwards) {
   EdgeVectors<Size> edges;
   take_vectors(edges, kept, posed, backwards);
-  for (int f = 0; f < kFloats * along.blocks(); f += kLanes) {
+  const Lanes most = Lanes{} + error, least = -most;
+  for (int f = 0; f < facets; f += kLanes) {
     Lanes nx, ny, nz;
     load(nx, along.nx + f);
     load(ny, along.ny + f);
     load(nz, along.nz + f);
-    WideBits signs = {}, small = {};
-    for (int i = 0; i < kept.count; ++i) {
+    Flags falling = {}, rising = {};
+    // The last edge first, so that each ends at the bit of its number.
+    for (int i = kept.count - 1; i >= 0; --i) {
       const Lanes rise = nx * edges.x[i] + ny * edges.y[i] + nz * edges.z[i];
-      WideBits bits, within;
-      __builtin_memcpy(&bits, &rise, sizeof(bits));
-      const Flags flags = (rise <= error) & (rise >= -error);
-      __builtin_memcpy(&within, &flags, sizeof(within));
-      signs |= bits >> 63 << i;
-      small |= within >> 63 << i;
+      append(falling, rise <= most);
+      append(rising, rise >= least);
     }
-    store_words(out, f, signs);
-    store_words(open, f, small);
+    __builtin_memcpy(out.falling + f, &falling, sizeof(falling));
+    __builtin_memcpy(out.rising + f, &rising, sizeof(rising));
   }
 }
 
-/// As `list_crossings` of the kernel, but that a side which is open may be either: the pairs that may cross.
+/// By kept edge of one body: the edges of the other that may fall along the facet to its left and rise along the one
+/// to its right, as bits, and those that may rise and fall. Words of 32 bits, in halves.
 template <class Size>
-PD_INLINE bool list_with_open_sides(Crossings<Size>& out, const KernelState<Size>& state, const Sides<Size>& open_a,
-                                    const Sides<Size>& open_b) {
-  using Word = typename Size::Word;
-  const KeptEdges<Size>&kept_a = state.kept_a, &kept_b = state.kept_b;
+struct ArcSides {
+  static constexpr int kHalf = 32, kHalves = kIsSmall<Size> ? 1 : 2;
+  static constexpr int kPadded = (Size::kKept + kFloats - 1) / kFloats * kFloats;
+  using Halves = std::uint32_t[kHalves][kPadded];
+  alignas(32) Halves falling, rising;
+
+  PD_INLINE static void set(Halves& to, int edge, std::uint64_t word) {
+    to[0][edge] = static_cast<std::uint32_t>(word);
+    if constexpr (!kIsSmall<Size>) to[1][edge] = static_cast<std::uint32_t>(word >> kHalf);
+  }
+  PD_INLINE static std::uint64_t of(const Halves& from, int edge) {
+    if constexpr (kIsSmall<Size>) return from[0][edge];
+    return from[0][edge] | std::uint64_t{from[kHalves - 1][edge]} << kHalf;
+  }
+  /// Bit i of the result: bit `column` of edge i's word.
+  PD_INLINE static std::uint64_t across(const Halves& from, int edges, int column) {
+    const std::uint32_t* const words = from[kIsSmall<Size> ? 0 : column / kHalf];
+    std::uint64_t out = 0;
+    for (int i = 0; i < edges; i += kFloats) {
+      Bits bits;
+      __builtin_memcpy(&bits, words + i, sizeof(bits));
+      bits <<= kHalf - 1 - column % kHalf;
+      Ids flags;
+      __builtin_memcpy(&flags, &bits, sizeof(flags));
+      out |= std::uint64_t{mask_of_eight(flags)} << i;
+    }
+    return out;
+  }
+};
+
+template <class Size>
+PD_INLINE void take_arcs(ArcSides<Size>& out, const KeptEdges<Size>& kept, const FineSides<Size>& sides) {
+  for (int i = 0; i < kept.count; ++i) {
+    const int left = kept.edge[i].left, right = kept.edge[i].right;
+    ArcSides<Size>::set(out.falling, i, sides.falling[left] & sides.rising[right]);
+    ArcSides<Size>::set(out.rising, i, sides.rising[left] & sides.falling[right]);
+  }
+}
+
+/// As `list_crossings` of the kernel, many at a time: the pairs that may cross. What one edge's facets see fall and
+/// rise, the other's see rise and fall.
+/// @param arcs_a  of edges of A by edges of B
+template <class Size>
+PD_INLINE bool list_pairs(Crossings<Size>& out, const ArcSides<Size>& arcs_a, int count_a, const ArcSides<Size>& arcs_b,
+                          int count_b) {
+  using Arcs = ArcSides<Size>;
+  // By whether the product of the edges, b x a, may point inwards, and outwards.
+  constexpr double kSigns[4] = {0, -1, 1, 0};
+  const std::uint64_t all = count_a > 0 ? ~std::uint64_t{0} >> (64 - count_a) : 0;
   int count = 0;
-  for (int j = 0; j < kept_b.count; ++j) {
-    const int left = kept_b.edge[j].left, right = kept_b.edge[j].right;
-    const Word left_b = state.sides_a.of(left), right_b = state.sides_a.of(right);
-    const Word open_left = open_a.of(left), open_right = open_a.of(right);
-    for (Word bits = (left_b ^ right_b) | open_left | open_right; bits != 0; bits &= bits - 1) {
+  for (int j = 0; j < count_b; ++j) {
+    const std::uint64_t inwards = Arcs::of(arcs_b.falling, j) & Arcs::across(arcs_a.rising, count_a, j) & all;
+    const std::uint64_t outwards = Arcs::of(arcs_b.rising, j) & Arcs::across(arcs_a.falling, count_a, j) & all;
+    for (std::uint64_t bits = inwards | outwards; bits != 0; bits &= bits - 1) {
       const int i = std::countr_zero(bits);
-      const Word left_a = state.sides_b.of(kept_a.edge[i].left), right_a = state.sides_b.of(kept_a.edge[i].right);
-      const auto bit = [](Word word, int place) { return static_cast<unsigned>(word >> place & 1); };
-      // Of arcs that cross, these are all 1, or all 0.
-      const unsigned sides = bit(left_b, i) | bit(~right_b, i) << 1 | bit(~left_a, j) << 2 | bit(right_a, j) << 3;
-      const unsigned open = bit(open_left, i) | bit(open_right, i) << 1 | bit(open_b.of(kept_a.edge[i].left), j) << 2 |
-                            bit(open_b.of(kept_a.edge[i].right), j) << 3;
-      const bool ones = (sides | open) == 15, zeros = (sides & ~open) == 0;
-      if (!ones && !zeros) continue;
       out.a[count] = static_cast<std::uint8_t>(i);
       out.b[count] = static_cast<std::uint8_t>(j);
-      out.sign[count] = ones && zeros ? 0 : ones ? -1 : 1;
+      out.sign[count] = kSigns[(inwards >> i & 1) | (outwards >> i & 1) << 1];
       ++count;
     }
     if (count > Size::kMostCrossings) return false;
@@ -92,11 +128,14 @@ PD_INLINE bool list_with_open_sides(Crossings<Size>& out, const KernelState<Size
 
 template <class Size>
 PD_INLINE bool list_precisely(const GaussSatBody& a, const GaussSatBody& b, const GaussSatErrors& errors,
-                              KernelState<Size>& state, Crossings<Size>& out) {
-  Sides<Size> open_a, open_b;
-  tell_precisely(state.sides_a, open_a, state.kept_a, a.posed, state.planes_b, errors.fine_side_a, true);
-  tell_precisely(state.sides_b, open_b, state.kept_b, b.posed, state.planes_a, errors.fine_side_b, false);
-  return list_with_open_sides(out, state, open_a, open_b);
+                              const KernelState<Size>& state, Crossings<Size>& out) {
+  FineSides<Size> along_a, along_b;
+  tell_precisely(along_b, state.kept_a, a.posed, state.planes_b, b.storage.num_facets, errors.fine_side_a, true);
+  tell_precisely(along_a, state.kept_b, b.posed, state.planes_a, a.storage.num_facets, errors.fine_side_b, false);
+  ArcSides<Size> arcs_a, arcs_b;
+  take_arcs(arcs_a, state.kept_a, along_a);
+  take_arcs(arcs_b, state.kept_b, along_b);
+  return list_pairs(out, arcs_a, state.kept_a.count, arcs_b, state.kept_b.count);
 }
 
 /// A pair's vectors, a pair a lane.
@@ -157,12 +196,12 @@ PD_INLINE void raise_by_all(Lanes& key, const PairVectors& of, const double (&of
 }  // namespace
 
 PD_CLONES bool list_in_double_precision(const GaussSatBody& a, const GaussSatBody& b, const GaussSatErrors& errors,
-                                        KernelState<Small>& state, Crossings<Small>& out) {
+                                        const KernelState<Small>& state, Crossings<Small>& out) {
   return list_precisely(a, b, errors, state, out);
 }
 
 PD_CLONES bool list_in_double_precision(const GaussSatBody& a, const GaussSatBody& b, const GaussSatErrors& errors,
-                                        KernelState<Middle>& state, Crossings<Middle>& out) {
+                                        const KernelState<Middle>& state, Crossings<Middle>& out) {
   return list_precisely(a, b, errors, state, out);
 }
 

@@ -215,8 +215,10 @@ PD_INLINE void nearest_of_all(NearestByGaussMaps& out, const GaussSatBody& a, co
   rough_planes(lowest, state.planes_b);
   const double level = least(lowest) + 4 * errors.height;
   Nearest facet{kNone, kNone, 0};
-  nearest_facet(facet, state.planes_a, a.storage.num_facets, b.posed, level, errors.height, 0, out.pieces);
-  nearest_facet(facet, state.planes_b, b.storage.num_facets, a.posed, level, errors.height, Size::kFacets, out.pieces);
+  VertexSets<Size> tops_a, tops_b;
+  nearest_facet(facet, tops_a, state.planes_a, a.storage.num_facets, b.posed, level, errors.height, 0, out.pieces);
+  nearest_facet(facet, tops_b, state.planes_b, b.storage.num_facets, a.posed, level, errors.height, Size::kFacets,
+                out.pieces);
   out.key = facet.key;
   out.others_key = facet.others;
   if (facet.id < Size::kFacets) {
@@ -229,19 +231,18 @@ PD_INLINE void nearest_of_all(NearestByGaussMaps& out, const GaussSatBody& a, co
     return;
   }
   const double radius = __builtin_sqrt(out.key) + (near != nullptr ? near->band : 0);
-  if (!keep_near_edges(state.kept_a, a, state.planes_a, of_b, radius, errors.height)) return;
-  if (!keep_near_edges(state.kept_b, b, state.planes_b, of_a, radius, errors.height)) return;
+  if (near != nullptr) tops_a = tops_b = {};
+  if (!keep_near_edges(state.kept_a, a, state.planes_a, of_b, tops_a, radius, errors.height)) return;
+  if (!keep_near_edges(state.kept_b, b, state.planes_b, of_a, tops_b, radius, errors.height)) return;
   if (near != nullptr) {
     near->radius = radius;
     list_near_facets(*near, true, a, state.planes_a, of_b, b.posed, errors.height);
     list_near_facets(*near, false, b, state.planes_b, of_a, a.posed, errors.height);
   }
   Crossings<Size> pairs;
-  const float side_a = tell_sides(state.sides_a, state.kept_a, of_a, state.planes_b.blocks(), true);
-  const float side_b = tell_sides(state.sides_b, state.kept_b, of_b, state.planes_a.blocks(), false);
-  const bool listed = side_a > errors.side_a && side_b > errors.side_b
-                          ? list_crossings(pairs, state)
-                          : list_in_double_precision(a, b, errors, state, pairs);
+  const bool told = tell_sides(state.sides_a, state.kept_a, of_a, state.planes_b.blocks(), true) > errors.side_a &&
+                    tell_sides(state.sides_b, state.kept_b, of_b, state.planes_a.blocks(), false) > errors.side_b;
+  const bool listed = told ? list_crossings(pairs, state) : list_in_double_precision(a, b, errors, state, pairs);
   if (!listed) return;
   out.outcome = NearestByGaussMaps::Outcome::found;
   out.pieces += pairs.count;

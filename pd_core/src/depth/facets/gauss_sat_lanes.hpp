@@ -15,7 +15,6 @@
 namespace pd::detail::gauss_sat {
 
 typedef std::uint32_t Bits __attribute__((vector_size(32)));
-typedef std::uint64_t WideBits __attribute__((vector_size(32)));
 
 /// Both bodies have a small Gauss map, whose arrays hold all facets and edges.
 struct Small {
@@ -112,9 +111,9 @@ struct KernelState {
 
 /// Tells all sides in double precision and lists the pairs that cross or may. False: there are too many.
 bool list_in_double_precision(const GaussSatBody& a, const GaussSatBody& b, const GaussSatErrors& errors,
-                              KernelState<Small>& state, Crossings<Small>& out);
+                              const KernelState<Small>& state, Crossings<Small>& out);
 bool list_in_double_precision(const GaussSatBody& a, const GaussSatBody& b, const GaussSatErrors& errors,
-                              KernelState<Middle>& state, Crossings<Middle>& out);
+                              const KernelState<Middle>& state, Crossings<Middle>& out);
 
 /// Slivers lie above their lowest corner along any vector: bounds them by the one along which that is highest, of the
 /// normals beside their edges, the middles between those, and their own. Drops those that are `level` or farther.

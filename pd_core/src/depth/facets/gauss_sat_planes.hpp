@@ -152,8 +152,10 @@ PD_INLINE void rough_planes(Lanes& least, Planes<Size>& planes) {
 }
 
 /// How far the other body reaches along facet f.
+/// @param heights  filled in, four vertices at a time
 template <class Size>
-PD_INLINE double top_along(int f, const Planes<Size>& planes, const VertexArrays& other) {
+PD_INLINE double top_along(int f, const Planes<Size>& planes, const VertexArrays& other,
+                           Lanes (&heights)[Size::kVertices / kLanes]) {
   Lanes top = Lanes{} - std::numeric_limits<double>::max();
   for (int v = 0; v < other.count; v += kLanes) {
     Lanes x, y, z;
@@ -161,16 +163,25 @@ PD_INLINE double top_along(int f, const Planes<Size>& planes, const VertexArrays
     load(y, other.y + v);
     load(z, other.z + v);
     const Lanes height = x * planes.nx[f] + y * planes.ny[f] + z * planes.nz[f];
+    heights[v / kLanes] = height;
     top = height > top ? height : top;
   }
   return greatest(top);
 }
 
+/// By facet: vertices of the other body as bits, the last one as the highest.
+template <class Size>
+struct VertexSets {
+  static constexpr int kFirst = 32 - Size::kVertices;  ///< the bit of vertex 0
+  alignas(32) std::uint32_t of[Size::kFacets];
+};
+
 /// Facets that may be the nearest, or near, are measured; the others are bounded.
 /// @param first_id  of these facets; those of A come first
+/// @param tops      of the measured ones the vertices that are farthest along them, of the others none
 template <class Size>
-PD_INLINE void nearest_facet(Nearest& best, const Planes<Size>& planes, int facets, const VertexArrays& other,
-                             double level, double error, int first_id, int& measured) {
+PD_INLINE void nearest_facet(Nearest& best, VertexSets<Size>& tops, const Planes<Size>& planes, int facets,
+                             const VertexArrays& other, double level, double error, int first_id, int& measured) {
   Lanes least_other = Lanes{} + kNone;
   std::uint64_t near = 0;
   for (int f = 0; f < kFloats * planes.blocks(); f += kLanes) {
@@ -179,6 +190,8 @@ PD_INLINE void nearest_facet(Nearest& best, const Planes<Size>& planes, int face
     const Lanes far = rough > level ? rough : least_other;
     least_other = far < least_other ? far : least_other;
     near |= std::uint64_t{mask_of_four(rough <= level)} << f;
+    const HalfIds none = {};
+    __builtin_memcpy(tops.of + f, &none, sizeof(none));
   }
   const double bound = key_of(least(least_other) - error, 1);
   best.others = bound < best.others ? bound : best.others;
@@ -186,7 +199,12 @@ PD_INLINE void nearest_facet(Nearest& best, const Planes<Size>& planes, int face
     const int f = std::countr_zero(near);
     if (f >= facets) break;
     ++measured;
-    const double key = key_of(planes.own[f] + top_along(f, planes, other), planes.squared[f]);
+    Lanes heights[Size::kVertices / kLanes];
+    const double top = top_along(f, planes, other, heights);
+    const double key = key_of(planes.own[f] + top, planes.squared[f]);
+    std::uint32_t highest = 0;
+    for (int v = 0; v < other.count; v += kLanes) highest |= mask_of_four(heights[v / kLanes] >= top) << v;
+    tops.of[f] = highest << VertexSets<Size>::kFirst;
     const double lost = key < best.key ? best.key : key;
     best.others = lost < best.others ? lost : best.others;
     if (key < best.key) {
@@ -202,7 +220,8 @@ PD_INLINE void list_near_facets(NearGaussPieces& near, bool of_a, const GaussSat
                                 const Heights<Size>& heights, const VertexArrays& other, double error) {
   for (int f = 0; f < body.storage.num_facets; ++f) {
     if (planes.rough[f] > (near.radius + error) * (planes.squared[f] > 1 ? planes.squared[f] : 1)) continue;
-    const double key = key_of(planes.own[f] + top_along(f, planes, other), planes.squared[f]);
+    Lanes all_heights[Size::kVertices / kLanes];
+    const double key = key_of(planes.own[f] + top_along(f, planes, other, all_heights), planes.squared[f]);
     if (!(key <= near.radius * near.radius)) continue;
     int vertex = 0;
     for (int v = 1; v < other.count; ++v) vertex = heights.row[v][f] > heights.row[vertex][f] ? v : vertex;
@@ -236,10 +255,11 @@ PD_INLINE void take_sign(Bits& bits, const Floats& value) {
   bits = bits >> 1 | (sign & kSign);
 }
 
-/// By facet: the vertices of the other body, as bits, that show it too far.
+/// The vertices of the other body that show a facet too far.
+/// @param tops  vertices that do so, too
 template <class Size>
-PD_INLINE void mark_far_facets(std::uint32_t (&far)[Size::kFacets], const Planes<Size>& planes,
-                               const Heights<Size>& other, double radius, double slack) {
+PD_INLINE void mark_far_facets(VertexSets<Size>& far, const Planes<Size>& planes, const Heights<Size>& other,
+                               const VertexSets<Size>& tops, double radius, double slack) {
   // Four chains of bits, as each waits for itself: two blocks of facets, and two halves of the vertices.
   constexpr int kTogether = 2, kHalfway = Size::kVertices / 2;
   for (int f = 0; f < kFloats * planes.blocks(); f += kTogether * kFloats) {
@@ -255,20 +275,27 @@ PD_INLINE void mark_far_facets(std::uint32_t (&far)[Size::kFacets], const Planes
       }
     }
     for (int i = 0; i < kTogether; ++i) {
-      const Bits both = first[i] >> kHalfway | second[i];
-      __builtin_memcpy(far + f + kFloats * i, &both, sizeof(both));
+      Bits top;
+      __builtin_memcpy(&top, tops.of + f + kFloats * i, sizeof(top));
+      const Bits all = first[i] >> kHalfway | second[i] | top;
+      __builtin_memcpy(far.of + f + kFloats * i, &all, sizeof(all));
     }
   }
 }
 
 /// Edges that may belong to a facet of P no farther than `radius`. A vertex of P, of facet f with vertex v of the other
 /// body, may show f too far; where one v does so for both facets of an edge, it does for all directions of its arc
-/// (arc_culling.hpp). False: there are more than there is room for.
+/// (arc_culling.hpp). The vertex that is farthest along a facet does for it what that facet's plane does: it is as far
+/// as the plane, which is no nearer than the nearest facet. So flush faces, which single precision cannot tell apart,
+/// keep few of their edges. False: there are more than there is room for.
+/// @param tops  no vertices, or those that are farthest along facets, where facets farther than the nearest one are not
+///              asked for
 template <class Size>
 PD_INLINE bool keep_near_edges(KeptEdges<Size>& out, const GaussSatBody& body, const Planes<Size>& planes,
-                               const Heights<Size>& other, double radius, double slack) {
-  alignas(32) std::uint32_t far[Size::kFacets];
-  mark_far_facets(far, planes, other, radius, slack);
+                               const Heights<Size>& other, const VertexSets<Size>& tops, double radius, double slack) {
+  VertexSets<Size> sets;
+  mark_far_facets(sets, planes, other, tops, radius, slack);
+  const auto& far = sets.of;
   int count = 0;
   if constexpr (kIsSmall<Size>) {
     const SmallGaussMap& map = static_cast<const SmallBodyStorage&>(body.storage).gauss_map;
