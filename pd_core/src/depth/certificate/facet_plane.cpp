@@ -30,11 +30,10 @@ PD_INLINE DoubleDouble sum(const DoubleDoubleLanesBy<P>& v) {
 }
 
 template <class P>
-PD_INLINE void measure_plane(const TurnedSum& of_u, const TurnedSum& of_v, const TurnedSum& of_p, PlaneParts& out) {
-  DoubleDoubleLanesBy<P> u, v, p, n, products;
-  add_up(u, of_u);
-  add_up(v, of_v);
-  add_up(p, of_p);
+PD_INLINE void measure_plane(const TurnedSum (&sums)[3], PlaneParts& out) {
+  DoubleDoubleLanesBy<P> turned[3], n, products;
+  for (int i = 0; i < 3; ++i) add_up(turned[i], sums[i]);
+  const auto& [u, v, p] = turned;
   cross(n, u, v);
   out.of_u = norm1(u);
   out.of_v = norm1(v);
@@ -115,10 +114,9 @@ FacetPlane measure_facet(const PosedPair& pair, const FacetOfDifference& facet) 
   const bool may_align = pair.doubles_rotate() || pair.has_an_own_coordinate();
   const Alignment aligned = may_align ? align_with_axis(pair, facet, plane) : Alignment::none;
   if (aligned == Alignment::found) return plane;
-  const TurnedSum of_u = pair.turned(facet.u), of_v = pair.turned(facet.v), of_p = pair.turned(facet.point());
+  const TurnedSum sums[3] = {pair.turned(facet.u), pair.turned(facet.v), pair.turned(facet.point())};
   PlaneParts found;
-  with_products([&](auto products)
-                    __attribute__((always_inline)) { measure_plane<decltype(products)>(of_u, of_v, of_p, found); });
+  with_products([&](auto products) __attribute__((always_inline)) { measure_plane<decltype(products)>(sums, found); });
   const double e = pair.vector_error_dd();
   const double su = found.of_u, sv = found.of_v, sp = found.of_p, sn = found.of_n;
   // Each coordinate of n: the errors of its two factors, then of two products and a difference.
