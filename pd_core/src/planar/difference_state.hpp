@@ -2,7 +2,6 @@
 /// What a PolygonDifference keeps.
 #pragma once
 
-#include <atomic>
 #include <memory>
 #include <optional>
 
@@ -28,7 +27,8 @@ struct PolygonDifference::State {
   detail::BoundaryQuery query;
 
   /// The polygons around R swept by a disc, made by the first question that needs them and kept for the same radius.
-  mutable std::atomic<std::shared_ptr<const detail::DiscBracket>> disc;
+  /// Read and written by `std::atomic_load` and `std::atomic_store`: Clang's library has no atomic of a shared pointer.
+  mutable std::shared_ptr<const detail::DiscBracket> disc;
 
   [[nodiscard]] Point2 turned(const Point2& v) const { return swapped ? Point2{-v[0], -v[1]} : v; }
   /// Fills the answer with the way from y (turned) to the nearest point of the boundary, or of its outer curve alone.

@@ -3,6 +3,7 @@
 // placements.
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <queue>
 
 #include "numeric/length.hpp"
@@ -95,10 +96,10 @@ class SweptDifference {
 
   /// The polygons around R swept by the disc, in the plane of the query.
   [[nodiscard]] Expected<std::shared_ptr<const detail::DiscBracket>> disc() const {
-    std::shared_ptr<const detail::DiscBracket> kept = s_.disc.load();
+    std::shared_ptr<const detail::DiscBracket> kept = std::atomic_load(&s_.disc);
     if (kept && kept->radius == radius_) return kept;
     auto made = detail::DiscBracket::of(s_.p, s_.q, radius_, low_, high_);
-    if (made) s_.disc.store(*made);
+    if (made) std::atomic_store(&s_.disc, *made);
     return made;
   }
 

@@ -84,7 +84,7 @@ Finding check_loops(const ConvexPolytope& p) {
     const auto loop = p.facet_vertices(f);
     total += static_cast<int>(loop.size());
     if (loop.size() < 3) return indexed("facets", f) + " has fewer than three vertices";
-    if (*std::min_element(loop.begin(), loop.end()) != loop[0]) {
+    if (std::any_of(loop.begin(), loop.end(), [&](int vertex) { return vertex < loop[0]; })) {
       return indexed("facets", f) + " does not begin with its lowest vertex";
     }
     int h = p.facet_half_edge(f);
