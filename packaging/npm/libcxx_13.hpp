@@ -1,7 +1,7 @@
 /// @file
 /// Debian's emscripten builds with libc++ 13, and this file adds the parts of C++20 that it lacks. The file is included
-/// before every source of the WebAssembly module, and nowhere else. Each part leaves when a newer library has it.
-/// The emulation of SSE2 is completed here, too.
+/// before every source of the WebAssembly module, and where `tests/rules/libcxx.sh` reads the core with libc++ 14. Each
+/// part leaves when a newer library has it. The emulation of SSE2 is completed here, too.
 #pragma once
 
 #include <array>
@@ -16,8 +16,10 @@
 #include <string_view>
 #include <system_error>
 
+#ifdef __EMSCRIPTEN__
 /// WebAssembly rounds to nearest and keeps subnormals, so emscripten's `_mm_getcsr` never asks for a change back.
 inline void _mm_setcsr(unsigned int) {}
+#endif
 
 #if _LIBCPP_VERSION < 14000
 namespace std {  // NOLINT(cert-dcl58-cpp): the names are the library's own
@@ -54,6 +56,12 @@ inline from_chars_result from_chars(const char* first, const char* last, double&
   value = read;
   return {rest, errc()};
 }
+
+}  // namespace std
+#endif
+
+#if _LIBCPP_VERSION < 15000
+namespace std {  // NOLINT(cert-dcl58-cpp): as above
 
 template <class T, size_t N>
 constexpr strong_ordering operator<=>(const array<T, N>& x, const array<T, N>& y) {

@@ -6,11 +6,11 @@ pd_build_packages=(
 )
 # Loaded or run, not linked: the rasteriser, the fonts of the captions, the video encoder.
 pd_demo_packages=(libosmesa6 libegl1 libegl-mesa0 fonts-inter fonts-dejavu-core ffmpeg)
-# clang-14 with its runtime builds with the sanitizers, chromium opens the pages of --report.
+# clang-14 with its runtime builds with the sanitizers, libc++-14-dev is its standard library, chromium opens the pages of --report.
 # mkdocs, its theme and Doxygen build the documentation's site; luajit runs a client of the C interface, abigail-tools guard its ABI,
 # libmujoco-dev, libfcl-dev and libode-dev are what the doors of these names are tested against.
 pd_test_packages=(
-  libgtest-dev libqhull-dev ccache clang-14 libclang-rt-14-dev chromium mkdocs mkdocs-material doxygen luajit abigail-tools libmujoco-dev libfcl-dev libode-dev
+  libgtest-dev libqhull-dev ccache clang-14 libclang-rt-14-dev libc++-14-dev chromium mkdocs mkdocs-material doxygen luajit abigail-tools libmujoco-dev libfcl-dev libode-dev
   python3-dev pybind11-dev python3-numpy python3-pytest python3-venv python3-pip python3-setuptools python3-wheel python3-build
   python3-distributed python3-jsonschema
 )
