@@ -23,9 +23,9 @@ class ShapeBeside final : public StandingBody {
 
   struct Found {
     ContactClass contact = ContactClass::separated;
-    std::int32_t triangle =
-        -1;                   ///< that tells the class, or the nearest one; -1: the shape lies inside, or none is near
-    PenetrationDepth answer;  ///< about that triangle
+    /// That tells the class, or the nearest one; -1: the shape lies inside, or none is near.
+    std::int32_t triangle = -1;
+    PenetrationDepth answer;     ///< about that triangle
     double distance_lower = 0;   ///< of all triangles
     std::int64_t triangles = 0;  ///< that were asked
   };
