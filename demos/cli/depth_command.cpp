@@ -291,6 +291,10 @@ struct SolidBody {
   std::shared_ptr<const MeshSolid> solid;
   std::optional<ConvexShape> shape;
   bool convex = false;
+
+  [[nodiscard]] query::SolidOrShape posed(const Pose& pose) const {
+    return {solid.get(), shape ? &*shape : nullptr, pose};
+  }
 };
 
 SolidBody solid_of(const std::shared_ptr<const MeshSolid>& loaded, const BodyArgument& argument) {
@@ -324,8 +328,9 @@ void print_solids(const DepthArguments& arguments, const SolidBody& a, const Sol
   if (result.face_a >= 0) print_row("of A", fmt::format("face {}", result.face_a));
   if (result.face_b >= 0) print_row("of B", fmt::format("face {}", result.face_b));
   fmt::print("\n");
-  print_row("method", fmt::format("solid, {} pairs of triangles, {} by {} convex parts, {}", result.work.triangle_pairs,
-                                  result.work.parts_a, result.work.parts_b, duration_in_words(nanoseconds)));
+  print_row("method", fmt::format("solid, {} tests of triangles, {} by {} convex parts, {} points, {}",
+                                  result.work.triangle_pairs, result.work.parts_a, result.work.parts_b,
+                                  result.work.points, duration_in_words(nanoseconds)));
   fmt::print("\n");
 }
 
@@ -337,18 +342,13 @@ int run_solids(const DepthArguments& arguments, const SolidBody& a, const SolidB
   }
   const Pose pose_a = parse_pose(arguments.pose_a, "--pose-a"), pose_b = parse_pose(arguments.pose_b, "--pose-b");
   Scratch scratch;
-  progress.begin("depth of a solid and another body");
-  const auto depth_of = [&](const auto& of_a, const auto& of_b) {
-    const auto found = penetration_depth(of_a, of_b, scratch);
-    if (!found) query::refuse(to_string(found.error().code), found.error().message, "");
-    return *found;
-  };
+  progress.begin("depth beside a solid");
   const PosedSolid posed_a{a.solid.get(), pose_a}, posed_b{b.solid.get(), pose_b};
   const query::Stopwatch watch;
-  const SolidDepth result = !b.solid   ? depth_of(posed_a, PosedShape{&*b.shape, pose_b})
-                            : !a.solid ? depth_of(PosedShape{&*a.shape, pose_a}, posed_b)
-                                       : depth_of(posed_a, posed_b);
+  const auto found = query::depth_beside_solid(a.posed(pose_a), b.posed(pose_b), scratch);
   const std::int64_t nanoseconds = watch.nanoseconds();
+  if (!found) query::refuse(to_string(found.error().code), found.error().message, "");
+  const SolidDepth& result = *found;
   const bool may_sit = result.contact == ContactClass::touching && a.solid && b.solid;
   progress.end();
   if (!arguments.json) {

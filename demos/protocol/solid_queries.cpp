@@ -34,6 +34,14 @@ void write_solid_answer(const SolidDepth& result, std::int64_t nanoseconds, Json
   answer.end_object();
 }
 
+Expected<SolidDepth> depth_beside_solid(const SolidOrShape& a, const SolidOrShape& b, Scratch& scratch,
+                                        const SolidSettings& settings) {
+  const PosedSolid solid_a{a.solid, a.pose}, solid_b{b.solid, b.pose};
+  if (b.shape != nullptr) return penetration_depth(solid_a, PosedShape{b.shape, b.pose}, scratch, settings);
+  if (a.shape != nullptr) return penetration_depth(PosedShape{a.shape, a.pose}, solid_b, scratch, settings);
+  return penetration_depth(solid_a, solid_b, scratch, settings);
+}
+
 void write_seat(const PosedSolid& a, const PosedSolid& b, JsonWriter& answer) {
   const Expected<bool> seat = is_seat(a, b);
   answer.key("seat");
@@ -52,7 +60,9 @@ struct SolidPair {
   std::optional<ConvexShape> shape_a, shape_b;
   Pose pose_a, pose_b;
 
-  /// False for unions, and for two shapes.
+  [[nodiscard]] SolidOrShape body_a() const { return {a.get(), shape_a ? &*shape_a : nullptr, pose_a}; }
+  [[nodiscard]] SolidOrShape body_b() const { return {b.get(), shape_b ? &*shape_b : nullptr, pose_b}; }
+  /// False for unions, flat polytopes, and two shapes.
   [[nodiscard]] bool is_answered() const { return (a && (b || shape_b)) || (b && shape_a); }
 };
 
@@ -73,15 +83,11 @@ void answer_by_union(std::string_view query, const Node& line, Session& session,
 void answer_solids(const SolidPair& pair, const SolidSettings& settings, const Node& line, Session& session,
                    JsonWriter& answer) {
   const Stopwatch watch;
-  const auto depth_of = [&](const auto& a, const auto& b) {
-    return value_or_refuse(penetration_depth(a, b, session.scratch, settings), line);
-  };
-  const PosedSolid a{pair.a.get(), pair.pose_a}, b{pair.b.get(), pair.pose_b};
-  const SolidDepth result = pair.shape_b   ? depth_of(a, PosedShape{&*pair.shape_b, pair.pose_b})
-                            : pair.shape_a ? depth_of(PosedShape{&*pair.shape_a, pair.pose_a}, b)
-                                           : depth_of(a, b);
+  const SolidDepth result =
+      value_or_refuse(depth_beside_solid(pair.body_a(), pair.body_b(), session.scratch, settings), line);
   write_solid_answer(result, watch.nanoseconds(), answer);
-  if (result.contact == ContactClass::touching && pair.a && pair.b) write_seat(a, b, answer);
+  if (result.contact != ContactClass::touching || !pair.a || !pair.b) return;
+  write_seat({pair.a.get(), pair.pose_a}, {pair.b.get(), pair.pose_b}, answer);
 }
 
 void answer_solid_depth(const Node& line, Session& session, JsonWriter& answer) {

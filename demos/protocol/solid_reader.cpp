@@ -161,7 +161,10 @@ std::shared_ptr<const MeshSolid> read_as_solid(const Node& node, const Limits& l
 
 std::optional<ConvexShape> read_beside_solid(const Node& node, const Limits& limits) {
   if (is_union(node) || read_solid(node, limits)) return std::nullopt;
-  return read_shape(node, limits).shape;
+  ConvexShape shape = read_shape(node, limits).shape;
+  const ConvexPolytope* const polytope = shape.polytope();
+  const bool is_flat = polytope != nullptr && polytope->affine_dimension() < 3 && shape.margin() == 0;
+  return is_flat ? std::nullopt : std::optional(std::move(shape));
 }
 
 bool is_mesh_of_parts(const Node& node) {

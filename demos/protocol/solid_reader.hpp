@@ -42,7 +42,8 @@ struct SolidWish {
 /// Either body of a query about solids: a mesh's, or a convex polytope's without a margin; null for others.
 [[nodiscard]] std::shared_ptr<const MeshSolid> read_as_solid(const Node& node, const Limits& limits);
 
-/// The convex shape of a query beside a solid: curved, or swept by a margin; nothing for bodies that are not convex.
+/// The convex shape of a query beside a solid: curved, or swept by a margin. Bodies that are not convex give nothing,
+/// and so do flat polytopes without a margin: both are asked as parts of a union.
 [[nodiscard]] std::optional<ConvexShape> read_beside_solid(const Node& node, const Limits& limits);
 
 /// True if a shape is a mesh whose groups are asked as the parts of a compound ("as":"parts").

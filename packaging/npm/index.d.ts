@@ -117,7 +117,7 @@ export class HullOfSpheres extends Shape { constructor(spheres: Rows); }
 /**
  * The solid that a closed mesh bounds: not convex in general, with cavities and several shells.
  *
- * Depth and `apart`, of solids and of a solid and a convex shape, ask the mesh itself. All else needs the solid as convex
+ * Depth and `apart`, of solids and of a solid and a convex shape that is not flat, ask the mesh itself. All else needs the solid as convex
  * parts: refused with "unsupported" where no doubles hold their corners, with "limit_exceeded" above 512 parts. A mesh that bounds no solid
  * is refused by its fault (open_edge, flipped_face, self_crossing, inside_out ...) and the face.
  */

@@ -156,7 +156,7 @@ TEST_F(CSolids, ConvexShapesBesideSolids) {
       EXPECT_EQ(answer.feature_a.part, PDEPTH_PART_MESH);
       EXPECT_EQ(answer.feature_b.kind, PDEPTH_FEATURE_NONE);
     }
-    // The same pair, the ball first.
+    // Now the ball comes first.
     pdepth_question question = question_of(c_ball.get(), hook.get());
     question.pose_a = pose_of(*Pose::from_matrix(Mat3::Identity(), Vec3(0.5, 1.25, 0.5)));
     auto answer = sized<pdepth_answer>();
@@ -164,6 +164,11 @@ TEST_F(CSolids, ConvexShapesBesideSolids) {
     EXPECT_EQ(answer.contact, PDEPTH_OVERLAPPING);
     EXPECT_EQ(answer.bracket_reached, 1);
   }
+  // A flat polytope is asked as a part of a union.
+  const Shape hook = solid(context_, test::mesh_of(kHook));
+  const std::array<double, 9> corners{0, 0, 0, 0.25, 0, 0, 0, 0.25, 0};
+  const Shape triangle = make_shape(context_, &pdepth_convex_hull, corners.data(), 3);
+  EXPECT_EQ(depth(hook.get(), triangle.get(), *Pose::from_matrix(Mat3::Identity(), Vec3(0.5, 0.5, 0.75))).depth, 0.25);
   EXPECT_GT(contacts[PDEPTH_SEPARATED], 0);
   EXPECT_GT(contacts[PDEPTH_TOUCHING], 0);
   EXPECT_GT(contacts[PDEPTH_OVERLAPPING], 3);

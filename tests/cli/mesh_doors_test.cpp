@@ -271,6 +271,10 @@ TEST_F(MeshDoors, CurvedAndSweptShapesBesideASolid) {
                              R"(,"pose_b":{"translation":)" + pose + "}}";
     EXPECT_EQ(answer(line).at("class"), contact) << line;
   }
+  // A flat polytope is asked as a part of a union.
+  const Json flat = answer(depth_line(mesh(angle_), R"({"type":"convex","vertices":[[0,0,0],[0.25,0,0],[0,0.25,0]]})",
+                                      R"("pose_b":{"translation":[0.25,0.25,0.75]})"));
+  EXPECT_EQ(flat.value("depth", 0.0), 0.25) << flat;
   const std::string torus = mesh(write("torus.obj", wavy_torus_obj()));
   const Json inside = answer(depth_line(torus, ball, R"("pose_b":{"translation":[3,0,0]})"));
   EXPECT_EQ(inside.at("class"), "overlapping") << inside;

@@ -16,19 +16,6 @@ namespace {
 
 Pose moved(const Vec3& translation) { return *Pose::from_matrix(Mat3::Identity(), translation); }
 
-/// The cells as a mesh in which each is divided `fine` times along each axis.
-MeshSolid fine_solid(const Cells& cells, int fine) {
-  Cells out;
-  for (const auto& [x, y, z] : cells) {
-    for (int i = 0; i < fine * fine * fine; ++i) {
-      out.insert({fine * x + i % fine, fine * y + i / fine % fine, fine * z + i / fine / fine});
-    }
-  }
-  Mesh mesh = mesh_of(out);
-  for (Vec3& p : mesh.points) p /= fine;
-  return solid_of(mesh);
-}
-
 ConvexShape shape_number(std::mt19937_64& random, int kind) {
   std::uniform_real_distribution<double> size(0.15, 0.6);
   const double r = size(random), h = size(random);

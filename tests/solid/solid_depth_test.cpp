@@ -110,21 +110,10 @@ TEST(SolidDepth, FineGridsReachTheBracket) {
   constexpr int kFine = 16;
   std::mt19937_64 random(12);
   Scratch scratch;
-  const auto fine = [](const Cells& cells) {
-    Cells out;
-    for (const auto& [x, y, z] : cells) {
-      for (int i = 0; i < kFine * kFine * kFine; ++i) {
-        out.insert({kFine * x + i % kFine, kFine * y + i / kFine % kFine, kFine * z + i / kFine / kFine});
-      }
-    }
-    Mesh mesh = mesh_of(out);
-    for (Vec3& p : mesh.points) p /= kFine;
-    return solid_of(mesh);
-  };
   int overlapping = 0;
   for (int pair = 0; pair < 6; ++pair) {
     const Cells cells_a = random_cells(random, 3 + pair % 3), cells_b = random_cells(random, 4);
-    const MeshSolid a = fine(cells_a), b = fine(cells_b);
+    const MeshSolid a = fine_solid(cells_a, kFine), b = fine_solid(cells_b, kFine);
     const Compound boxes_a = boxes_of(cells_a), boxes_b = boxes_of(cells_b);
     const auto step = [&] { return 0.25 * static_cast<double>(static_cast<int>(random() % 5) - 2) + 0.1; };
     const Pose pose = turned({1, 0.05 * pair, -0.1, 0.2 * (pair % 2)}, {step(), step(), step()});

@@ -84,6 +84,25 @@ inline Cells random_cells(std::mt19937_64& random, int count, const std::array<i
   }
 }
 
+inline MeshSolid solid_of(const Mesh& mesh) {
+  Expected<MeshSolid> solid = MeshSolid::from_faces(mesh.view());
+  if (!solid) throw std::runtime_error(solid.error().message);
+  return *std::move(solid);
+}
+
+/// The cells as a mesh in which each is divided `fine` times along each axis.
+inline MeshSolid fine_solid(const Cells& cells, int fine) {
+  Cells out;
+  for (const auto& [x, y, z] : cells) {
+    for (int i = 0; i < fine * fine * fine; ++i) {
+      out.insert({fine * x + i % fine, fine * y + i / fine % fine, fine * z + i / fine / fine});
+    }
+  }
+  Mesh mesh = mesh_of(out);
+  for (Vec3& p : mesh.points) p /= fine;
+  return solid_of(mesh);
+}
+
 /// An octahedron, its faces divided `times` times into four, whose corners stand at random distances from the centre.
 inline StarBody random_star(std::mt19937_64& random, int times, const Vec3& centre) {
   std::vector<Vec3> points = {Vec3::UnitX(),  -Vec3::UnitX(), Vec3::UnitY(),
@@ -115,12 +134,6 @@ inline Mesh mesh_of(const StarBody& star) {
   mesh.points = star.vertices();
   for (const auto& f : star.faces()) mesh.add({f[0], f[1], f[2]});
   return mesh;
-}
-
-inline MeshSolid solid_of(const Mesh& mesh) {
-  Expected<MeshSolid> solid = MeshSolid::from_faces(mesh.view());
-  if (!solid) throw std::runtime_error(solid.error().message);
-  return *std::move(solid);
 }
 
 }  // namespace pd::test

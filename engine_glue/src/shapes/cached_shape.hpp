@@ -29,7 +29,7 @@ struct CachedShape {
   std::atomic<bool> used{false};           ///< found since the cache last looked for entries to drop
   std::atomic<std::uint64_t> compared{0};  ///< the stamp under which all points were last compared
 
-  /// Whether the shape has this fingerprint under this stamp; takes note of the stamp if it has.
+  /// True if the shape has this fingerprint. The stamp is then noted as the one under which all points were compared.
   bool has_content(std::uint64_t now, std::uint64_t stamp) {
     if (fingerprint == now) compared.store(stamp, std::memory_order_relaxed);
     return fingerprint == now;

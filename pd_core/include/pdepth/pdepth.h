@@ -160,7 +160,7 @@ pdepth_status pdepth_hull_of_spheres(pdepth_context* context, const double* sphe
 /// Errors: as `pdepth_convex_hull`, and bad_faces, not_closed, limit_exceeded; the message begins with the fault
 /// (open_edge, flipped_face, not_manifold, self_crossing, inside_out, not_planar, degenerate_face). Time O(n log n).
 ///
-/// Depth and apart, of solids and of a solid and a convex shape, ask the mesh itself. All else needs
+/// Depth and apart, of solids and of a solid and a convex shape that is not flat, ask the mesh itself. All else needs
 /// the solid as convex parts, which its first such query cuts: unsupported where no doubles hold their corners,
 /// limit_exceeded above 512 parts or 20,000 pieces of faces.
 pdepth_status pdepth_mesh_solid(pdepth_context* context, const pdepth_faces* mesh, int32_t turn_faces,

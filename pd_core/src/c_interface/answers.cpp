@@ -55,51 +55,40 @@ UnionDepth union_depth(const Question& question, Workspace& space) {
                   "question");
 }
 
-/// A body of a question about solids: its own mesh, a convex polytope's, or another convex shape.
-class AsSolid {
- public:
-  AsSolid(const pdepth_shape& shape, const PosedShape& posed)
-      : solid_(shape.solid ? &shape.solid->mesh() : nullptr), convex_(shape.convex()), pose_(posed.pose) {
-    if (convex_ == nullptr || convex_->polytope() == nullptr || convex_->margin() != 0) return;
-    if (Expected<MeshSolid> made = MeshSolid::from_polytope(*convex_->polytope())) {
-      solid_ = &made_.emplace(std::move(made).value());
-    }
-  }
-  AsSolid(const AsSolid&) = delete;
-  AsSolid& operator=(const AsSolid&) = delete;
-  [[nodiscard]] bool is_union() const { return solid_ == nullptr && convex_ == nullptr; }
-  [[nodiscard]] bool is_solid() const { return solid_ != nullptr; }
-  [[nodiscard]] PosedSolid posed_solid() const { return {solid_, pose_}; }
-  [[nodiscard]] PosedShape posed_shape() const { return {convex_, pose_}; }
-  /// @param face  of a SolidDepth. Faces of polytopes are their facets.
-  [[nodiscard]] pdepth_feature feature(std::int32_t face) const {
-    if (face < 0) return {PDEPTH_FEATURE_NONE, 0, -1, -1};
-    return {PDEPTH_FEATURE_FACET, made_ ? 0 : PDEPTH_PART_MESH, face, -1};
-  }
+const MeshSolid* solid_mesh(const pdepth_shape& shape) { return shape.solid ? &shape.solid->mesh() : nullptr; }
 
- private:
-  std::optional<MeshSolid> made_;
-  const MeshSolid* solid_;
-  const ConvexShape* convex_;
-  const Pose& pose_;
-};
+/// True for convex shapes with an interior. A union, and a polytope that is flat, is asked as parts.
+bool stands_beside_solid(const pdepth_shape& body) {
+  const ConvexShape* const shape = body.convex();
+  if (shape == nullptr) return false;
+  return shape->polytope() == nullptr || shape->margin() > 0 || shape->polytope()->affine_dimension() == 3;
+}
 
-/// Two meshes, or a mesh and a convex shape. False where neither body is a mesh or one is a union, so that nothing was
-/// asked.
+/// @param face  of a SolidDepth. Faces of polytopes are their facets.
+pdepth_feature face_feature(const pdepth_shape& body, std::int32_t face) {
+  if (face < 0) return {PDEPTH_FEATURE_NONE, 0, -1, -1};
+  return {PDEPTH_FEATURE_FACET, body.solid ? PDEPTH_PART_MESH : 0, face, -1};
+}
+
+/// Two meshes, or a mesh and a convex shape. False where neither body is a mesh, or one is asked as parts, so that
+/// nothing was asked.
 bool answered_by_meshes(const Question& question, Workspace& space, pdepth_answer& out) {
-  if (!question.a.solid && !question.b.solid) return false;
-  const AsSolid a(question.a, question.posed_a), b(question.b, question.posed_b);
-  if (a.is_union() || b.is_union()) return false;
+  const MeshSolid *const mesh_a = solid_mesh(question.a), *const mesh_b = solid_mesh(question.b);
+  const bool shape_a = mesh_a == nullptr && stands_beside_solid(question.a);
+  const bool shape_b = mesh_b == nullptr && stands_beside_solid(question.b);
+  if (mesh_a == nullptr && mesh_b == nullptr) return false;
+  if ((mesh_a == nullptr && !shape_a) || (mesh_b == nullptr && !shape_b)) return false;
   require_automatic(question);
-  const auto depth_of = [&](const auto& of_a, const auto& of_b) {
-    return value_of(penetration_depth(of_a, of_b, space.scratch, question.settings.of_solids), "question");
+  const auto depth_of = [&](const auto& a, const auto& b) {
+    return value_of(penetration_depth(a, b, space.scratch, question.settings.of_solids), "question");
   };
-  const SolidDepth found = !b.is_solid()   ? depth_of(a.posed_solid(), b.posed_shape())
-                           : !a.is_solid() ? depth_of(a.posed_shape(), b.posed_solid())
-                                           : depth_of(a.posed_solid(), b.posed_solid());
+  const PosedShape &a = question.posed_a, &b = question.posed_b;
+  const SolidDepth found = shape_b   ? depth_of(PosedSolid{mesh_a, a.pose}, PosedShape{question.b.convex(), b.pose})
+                           : shape_a ? depth_of(PosedShape{question.a.convex(), a.pose}, PosedSolid{mesh_b, b.pose})
+                                     : depth_of(PosedSolid{mesh_a, a.pose}, PosedSolid{mesh_b, b.pose});
   write_depth(found, out);
-  out.feature_a = a.feature(found.face_a);
-  out.feature_b = b.feature(found.face_b);
+  out.feature_a = face_feature(question.a, found.face_a);
+  out.feature_b = face_feature(question.b, found.face_b);
   return true;
 }
 

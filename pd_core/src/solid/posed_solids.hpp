@@ -102,7 +102,7 @@ class PosedSolids {
   mutable std::int64_t exact_signs_ = 0;
 };
 
-/// The same rotation with another translation.
+/// A pose of the same rotation with another translation.
 [[nodiscard]] Pose placed_at(const Pose& pose, const Vec3& translation);
 
 /// A pose's rotation as numerators, and their denominator: |q|^2 of a quaternion, else 1.

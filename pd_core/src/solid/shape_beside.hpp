@@ -23,7 +23,7 @@ class ShapeBeside final : public StandingBody {
 
   struct Found {
     ContactClass contact = ContactClass::separated;
-    /// That tells the class, or the nearest one; -1: the shape lies inside, or none is near.
+    /// The triangle that tells the class, or the nearest one; -1 where the shape lies inside or none is near.
     std::int32_t triangle = -1;
     PenetrationDepth answer;     ///< about that triangle
     double distance_lower = 0;   ///< of all triangles

@@ -121,6 +121,11 @@ Expected<SolidDepth> penetration_depth(const PosedSolid& a, const PosedShape& b,
 
 Expected<SolidDepth> penetration_depth(const PosedShape& a, const PosedSolid& b, Scratch& scratch,
                                        const SolidSettings& settings) {
+  if (is_bare_polytope(*a.shape)) {
+    const Expected<MeshSolid> solid = MeshSolid::from_polytope(*a.shape->polytope());
+    if (!solid) return solid.error();
+    return penetration_depth(PosedSolid{&*solid, a.pose}, b, scratch, settings);
+  }
   const Expected<SolidDepth> turned = penetration_depth(b, a, scratch, settings);
   if (!turned) return turned.error();
   SolidDepth out = *turned;

@@ -77,7 +77,7 @@ struct SolidDepth : PenetrationDepth {
 ///
 /// A polytope without a margin is asked as a solid, as above. Other shapes meet the solid where they meet one of its
 /// triangles, or lie inside of it: class and distance are those of the convex `penetration_depth`, as exact as there.
-/// Where the two overlap, the points of the settings are the budget. `face_b` is -1.
+/// The points of the settings are the budget where the two overlap. `face_b` is -1.
 /// Time: a convex query for each triangle that the shape comes near; where they overlap, some microseconds a point.
 /// @return bad_value as above; not_full_dimensional for a flat polytope without a margin; out_of_range for poses
 /// farther apart than numbers reach.

@@ -99,8 +99,9 @@ PD_INLINE void take_arcs(ArcSides<Size>& out, const KeptEdges<Size>& kept, const
   }
 }
 
-/// As `list_crossings` of the kernel, many at a time: the pairs that may cross. What one edge's facets see fall and
-/// rise, the other's see rise and fall.
+/// Lists the pairs that may cross, as `list_crossings` of the kernel does, many at a time. Two edges may cross where
+/// one falls and then rises along the facets beside the other, while the other rises and then falls along those beside
+/// it.
 /// @param arcs_a  of edges of A by edges of B
 template <class Size>
 PD_INLINE bool list_pairs(Crossings<Size>& out, const ArcSides<Size>& arcs_a, int count_a, const ArcSides<Size>& arcs_b,
