@@ -49,7 +49,7 @@ bool box_contacts(const btConvexShape& a, const btTransform& transform_a, const 
   if (!found.answered) return false;
   held.counters.calls.add();
   meter.count(found.contact);
-  out = fresh_points(found.manifold);
+  set_fresh_points(found.manifold, out);
   return true;
 }
 

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
 #include <typeinfo>
 
 #include "pair/box_contacts.hpp"
@@ -88,7 +87,7 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
   const btScalar reach = own_boxes && !touched ? this_step().of_boxes(shape_a, shape_b) : threshold;
   auto buffers = core.buffers.lease();
   FreshPoints fresh;
-  std::optional<PairAnswer> answer;
+  PairAnswer* answer = nullptr;  // the buffers' own, since making it costs more than boxes take to be compared
   // An algorithm that is used for the first time may belong to a query between two steps, whose shapes nobody compared.
   const std::uint64_t stamp = first ? 0 : world_.stamp();
   const auto asked_reach = static_cast<double>(threshold);
@@ -108,7 +107,8 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
                              .beyond = touched ? kAnyDistance : static_cast<double>(threshold),
                              .boxes_asked = boxes && !asked_for_more};
     ContactManifold points;
-    const auto outcome = core.contacts(asked, contact_reach, *buffers, answer.emplace(), points);
+    answer = &(buffers->answer = PairAnswer());
+    const auto outcome = core.contacts(asked, contact_reach, *buffers, *answer, points);
     if (outcome == SolverCore::Outcome::unsupported) {
       process_by_bullet(core.fallback(), *a, *b, info, *result);
       return;
@@ -126,17 +126,17 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
       } else {
         far_pair(contact_reach, asked_reach, answer->depth, points);
       }
-      fresh = fresh_points(points);
+      set_fresh_points(points, fresh);
     }
   }
   if (memory != nullptr && !of_union && on_one_line(fresh, kEdge * threshold) && this_step().against_fixed()) {
-    if (!answer) {
+    if (answer == nullptr) {
       const CachedShape& found_a = core.find(shape_a, stamp, memory->shapes[0], *buffers);
       const CachedShape& found_b = core.find(shape_b, stamp, memory->shapes[1], *buffers);
-      answer = PairAnswer{.depth = {},
-                          .a = {found_a.sharp.get(), to_pd(pose_a)},
-                          .b = {found_b.sharp.get(), to_pd(pose_b)},
-                          .boxes = true};
+      answer = &(buffers->answer = {.depth = {},
+                                    .a = {found_a.sharp.get(), to_pd(pose_a)},
+                                    .b = {found_b.sharp.get(), to_pd(pose_b)},
+                                    .boxes = true});
     }
     if (answer->a.shape != nullptr && answer->b.shape != nullptr &&
         pass_each_other(answer->a, answer->b, fresh, this_step())) {

@@ -122,6 +122,8 @@ bool replace_lasting_points(const PointsOfStep& step, const LastingPoints& lasti
   const FourVectors normal = gather({&points[0]->normal, &points[1]->normal, &points[2]->normal, &points[3]->normal});
   const FourVectors world_a = world_b + scaled(normal, Lanes{points[0]->distance, points[1]->distance,
                                                              points[2]->distance, points[3]->distance});
+  // What is stored here is loaded at the end, when no store of it is still on its way.
+  const btManifoldPoint pattern = pattern_of(result, *entries.at[0], points[0]->normal);
   const FourVectors old_a = entries.gather(&btManifoldPoint::m_localPointA);
   const FourVectors old_b = entries.gather(&btManifoldPoint::m_localPointB);
 
@@ -155,17 +157,18 @@ bool replace_lasting_points(const PointsOfStep& step, const LastingPoints& lasti
     shown_a = select(held, shown_a, world_a);
   }
 
-  btManifoldPoint pattern = pattern_of(result, *entries.at[0], points[0]->normal);
   const bool same_step = step.seconds == memory.seconds;
   PieceNumbers numbers;
+  bool told = false;
   for (int k = 0; k < count; ++k) {
     btManifoldPoint& point = *entries.at[static_cast<std::size_t>(k)];
     RememberedPoint& remembered = memory.points[lasting.entries[k]];
-    if (step.pieces != nullptr) {
-      if (step.pieces->numbers(points[k]->piece, numbers)) set_numbers(numbers, manifold, result, pattern);
-      if (!(points[k]->normal == pattern.m_normalWorldOnB)) turn_to(points[k]->normal, pattern);
-    }
     copy_kind(pattern, point);
+    if (step.pieces != nullptr) {
+      told |= step.pieces->numbers(points[k]->piece, numbers);
+      if (told) set_numbers(numbers, manifold, result, point);
+      if (!(points[k]->normal == pattern.m_normalWorldOnB)) turn_to(points[k]->normal, point);
+    }
     point.m_distance1 = points[k]->distance;
     point.m_positionWorldOnB = points[k]->point_on_b;
     point.m_contactPointFlags = pattern.m_contactPointFlags | (held[k] != 0 ? BT_CONTACT_FLAG_FRICTION_ANCHOR : 0);

@@ -116,23 +116,28 @@ std::array<btVector3, 4> local_on_a(const btTransform& pose_a, const FreshPoints
   return local;
 }
 
-FreshPoint fresh_point(const btVector3& normal, const ContactPoint& point) {
-  return {normal, to_bullet(point.position_b), static_cast<btScalar>(-point.depth), point.feature_id};
+void set_fresh_point(const btVector3& normal, const ContactPoint& point, FreshPoint& out) {
+  out.normal = normal;
+  out.point_on_b = to_bullet(point.position_b);
+  out.distance = static_cast<btScalar>(-point.depth);
+  out.feature_id = point.feature_id;
 }
 
 }  // namespace
 
-FreshPoint fresh_point(const Vec3& normal, const ContactPoint& point) { return fresh_point(to_bullet(normal), point); }
+FreshPoint fresh_point(const Vec3& normal, const ContactPoint& point) {
+  FreshPoint fresh;
+  set_fresh_point(to_bullet(normal), point, fresh);
+  return fresh;
+}
 
-FreshPoints fresh_points(const ContactManifold& manifold) {
-  FreshPoints fresh;
+void set_fresh_points(const ContactManifold& manifold, FreshPoints& out) {
   const btVector3 normal = to_bullet(manifold.normal);
   for (int k = 0; k < manifold.count; ++k) {
     const auto i = static_cast<std::size_t>(k);
-    fresh.points[i] = fresh_point(normal, manifold.points[i]);
+    set_fresh_point(normal, manifold.points[i], out.points[i]);
   }
-  fresh.count = manifold.count;
-  return fresh;
+  out.count = manifold.count;
 }
 
 void add_points(btPersistentManifold& manifold, const FreshPoints& found, const StepTime& seconds,

@@ -44,7 +44,7 @@ std::array<int, 4> keep_points(FreshPoints& points, IsKept&& is_kept) {
 }
 
 [[nodiscard]] FreshPoint fresh_point(const Vec3& normal, const ContactPoint& point);
-[[nodiscard]] FreshPoints fresh_points(const ContactManifold& manifold);
+void set_fresh_points(const ContactManifold& manifold, FreshPoints& out);
 
 /// Of the pieces that a point lies between, as Bullet counts parts and children: of both bodies of the pair's result.
 struct PieceNumbers {

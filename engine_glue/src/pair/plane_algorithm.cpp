@@ -46,7 +46,7 @@ bool PlaneAlgorithm::find(const btCollisionObjectWrapper& body, const btCollisio
                              .sharp_box = true};
   HalfspaceContact found;
   const SolverCore::Outcome outcome = core.stand_on(asked, *buffers, found);
-  if (outcome == SolverCore::Outcome::answered) fresh = fresh_points(found.manifold);
+  if (outcome == SolverCore::Outcome::answered) set_fresh_points(found.manifold, fresh);
   return outcome != SolverCore::Outcome::unsupported;
 }
 

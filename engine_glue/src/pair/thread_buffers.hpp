@@ -13,6 +13,7 @@
 #include "pd/union_contact/covered_contact.hpp"
 #include "pd/union_contact/union_exit.hpp"
 #include "pieces/near_pieces.hpp"
+#include "shapes/pair_answer.hpp"
 #include "shapes/triangle_cache.hpp"
 #include "shapes/triangles_around.hpp"
 
@@ -45,6 +46,7 @@ struct WorkingMemory {
 struct ThreadBuffers {
   Scratch scratch;
   ManifoldScratch manifold;
+  PairAnswer answer;  ///< of `ContactAlgorithm`
   CoverBuffers cover;
   NearPieces near;  ///< of the pair at hand
   UnionExit union_exit;

@@ -277,7 +277,8 @@ bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& qu
   memory.apart_until = memory.met ? 0 : way + answer.depth.distance_lower;
   reach.leave_out_idle(points);
   if (reach.against_fixed()) {
-    const FreshPoints fresh = fresh_points(points);
+    FreshPoints fresh;
+    set_fresh_points(points, fresh);
     if (on_one_line(fresh, kEdge * question.threshold) && pass_each_other(answer.a, answer.b, fresh, reach)) {
       points.count = 0;
     }

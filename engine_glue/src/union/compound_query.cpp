@@ -147,7 +147,8 @@ class Query {
     if (points.count == 0) return true;
     btPersistentManifold& manifold = manifold_.for_next_pair();
     result_.setPersistentManifold(&manifold);
-    const FreshPoints fresh = fresh_points(points);
+    FreshPoints fresh;
+    set_fresh_points(points, fresh);
     if (fresh.count == 1) {
       const FreshPoint& point = fresh.points[0];
       result_.addContactPoint(point.normal, point.point_on_b, point.distance);

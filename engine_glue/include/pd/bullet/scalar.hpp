@@ -39,8 +39,14 @@ inline void to_pd(const btVector3& v, double (&out)[4]) {
   return Pose::from_trusted_matrix(to_pd(transform.getBasis()), to_pd(transform.getOrigin()));
 }
 
+/// The vector is stored at once. A processor waits when it loads a vector that was stored number by number just before.
 [[nodiscard]] inline btVector3 to_bullet(const Vec3& v) {
-  return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())};
+  typedef btScalar FourNumbers __attribute__((vector_size(4 * sizeof(btScalar))));
+  const FourNumbers numbers = {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z()),
+                               0};
+  btVector3 out;
+  __builtin_memcpy(out.m_floats, &numbers, sizeof(numbers));
+  return out;
 }
 
 /// True if every number of the transform is finite.
