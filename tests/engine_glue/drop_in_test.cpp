@@ -416,6 +416,39 @@ TEST(DropIn, RecommendedSettings) {
   EXPECT_NE(info.m_solverMode & SOLVER_USE_2_FRICTION_DIRECTIONS, 0);
   EXPECT_NE(info.m_solverMode & SOLVER_INTERLEAVE_CONTACT_AND_FRICTION_CONSTRAINTS, 0);
   EXPECT_NE(info.m_solverMode & SOLVER_USE_WARMSTARTING, 0);  // what was on stays on
+  EXPECT_EQ(info.m_leastSquaresResidualThreshold, btScalar(1e-7) * btScalar(1e-7));
+  info.m_leastSquaresResidualThreshold = btScalar(1e-3);
+  apply_recommended(info);
+  EXPECT_EQ(info.m_leastSquaresResidualThreshold, btScalar(1e-3));  // the host's own
+}
+
+/// The sweeps of the last of 120 steps in which a box stands on a slope, and how far it has come.
+struct SweepsOnSlope {
+  int sweeps;
+  double way;
+};
+
+SweepsOnSlope sweeps_on_slope(bool end_early) {
+  BulletWorld bullet;
+  BulletPenetrationDepthSolver solver;
+  install(bullet.world(), solver);
+  bullet.world().setGravity(btVector3(2, -10, 0));
+  apply_recommended(bullet.world().getSolverInfo());
+  if (!end_early) bullet.world().getSolverInfo().m_leastSquaresResidualThreshold = 0;
+  bullet.body(bullet.shape<btBoxShape>(btVector3(10, 1, 10)), 0, btVector3(0, -1, 0));
+  const btVector3 start(0, btScalar(0.5), 0);
+  const btRigidBody& box = *bullet.body(bullet.shape<btBoxShape>(btVector3(1, btScalar(0.5), 2)), 1, start);
+  for (int i = 0; i < 120; ++i) bullet.world().stepSimulation(kStep, 0);
+  return {bullet.constraint_solver().m_analyticsData.m_numIterationsUsed,
+          static_cast<double>((box.getWorldTransform().getOrigin() - start).length())};
+}
+
+TEST(DropIn, RecommendedSweepsEndWhereNothingChanges) {
+  const SweepsOnSlope all = sweeps_on_slope(false), few = sweeps_on_slope(true);
+  EXPECT_EQ(all.sweeps, 30);
+  EXPECT_LT(few.sweeps, 20);
+  EXPECT_LT(all.way, 1e-6);
+  EXPECT_LT(few.way, 1e-6);
 }
 
 }  // namespace
