@@ -3,103 +3,76 @@
 #include <bit>
 #include <limits>
 
-#include "depth/facets/gauss_sat_planes.hpp"
+#include "depth/facets/gauss_sat_crossings.hpp"
 
 namespace pd::detail {
 
 namespace gauss_sat {
 namespace {
 
-template <class Size>
-PD_INLINE void tell_half(std::uint32_t* out, float& least, const KeptEdges<Size>& kept, int first,
-                         const Heights<Size>& heights, int blocks, bool backwards) {
-  constexpr int kHalf = Sides<Size>::kHalf;
-  const int end = kept.count < first + kHalf ? kept.count : first + kHalf;
-  Floats least_size = Floats{} + std::numeric_limits<float>::max();
-  for (int k = 0; k < blocks; ++k) {
-    Bits bits = {};
-    for (int i = first; i < end; ++i) {
-      Floats high, low;
-      const GaussEdge& e = kept.edge[i];
-      load(high, heights.row[backwards ? e.from : e.to] + kFloats * k);
-      load(low, heights.row[backwards ? e.to : e.from] + kFloats * k);
-      const Floats rise = high - low;
-      Bits as_bits;
-      __builtin_memcpy(&as_bits, &rise, sizeof(as_bits));
-      bits |= as_bits >> 31 << (i - first);
-      as_bits &= ~kSign;
-      Floats size;
-      __builtin_memcpy(&size, &as_bits, sizeof(size));
-      least_size = size < least_size ? size : least_size;
-    }
-    __builtin_memcpy(out + kFloats * k, &bits, sizeof(bits));
-  }
-  for (int i = 0; i < kFloats; ++i) least = least_size[i] < least ? least_size[i] : least;
-}
+/// Four pairs of an edge of -A and one of B, a pair a lane.
+struct LanePairs {
+  LaneVectors p, e, q, f;  ///< where they start, and the edges; that of -A runs backwards
+  Lanes sign;
+};
 
-/// Bit i of a facet's word: kept edge i descends along it. Returns the least rise or descent.
-template <class Size>
-PD_INLINE float tell_sides(Sides<Size>& out, const KeptEdges<Size>& kept, const Heights<Size>& heights, int blocks,
-                           bool backwards) {
-  float least = std::numeric_limits<float>::max();
-  tell_half(out.low, least, kept, 0, heights, blocks, backwards);
-  if constexpr (!kIsSmall<Size>) {
-    if (kept.count > Sides<Size>::kHalf) {
-      tell_half(out.high, least, kept, Sides<Size>::kHalf, heights, blocks, backwards);
-    } else {
-      for (int k = 0; k < kFloats * blocks; ++k) out.high[k] = 0;
-    }
-  }
-  return least;
-}
-
-/// Arc j of B crosses the plane of arc i of -A where its two facets lie on different sides of it, and the other way
-/// round; of two arcs that do both, on the same half of the sphere where these sides are opposite. False: too many.
-template <class Size>
-PD_INLINE bool list_crossings(Crossings<Size>& out, const KernelState<Size>& state) {
-  using Word = typename Size::Word;
-  constexpr double kSigns[2] = {1, -1};
-  const KeptEdges<Size>&kept_a = state.kept_a, &kept_b = state.kept_b;
-  Word left_of[Size::kKept], right_of[Size::kKept];
-  for (int i = 0; i < kept_a.count; ++i) {
-    left_of[i] = state.sides_b.of(kept_a.edge[i].left);
-    right_of[i] = left_of[i] ^ state.sides_b.of(kept_a.edge[i].right);
-  }
-  int count = 0;
-  for (int j = 0; j < kept_b.count; ++j) {
-    const Word left = state.sides_a.of(kept_b.edge[j].left), across = left ^ state.sides_a.of(kept_b.edge[j].right);
-    for (Word bits = across; bits != 0; bits &= bits - 1) {
-      const int i = std::countr_zero(bits);
-      // Written in any case, and counted where they cross.
-      out.a[count] = static_cast<std::uint8_t>(i);
-      out.b[count] = static_cast<std::uint8_t>(j);
-      out.sign[count] = kSigns[left >> i & 1];
-      count += static_cast<int>((right_of[i] >> j) & ((left >> i) ^ (left_of[i] >> j)) & 1);
-    }
-    if (count > Size::kMostCrossings) return false;
-  }
-  out.count = count;
-  return true;
-}
-
-/// Parallelograms of an edge of -A from p to e and one of B from q to f.
+/// Their parallelograms.
 struct Parallelograms {
   Lanes lowest, squared;  ///< height of the lowest corner along the normal, sign * b x a, and its squared length
   Lanes edges;            ///< product of the edges' squared lengths
 };
 
+template <class Size>
+PD_INLINE void take_pairs(LanePairs& out, const Crossings<Size>& pairs, int first, const KernelState<Size>& state,
+                          const VertexArrays& a, const VertexArrays& b) {
+  const auto &of_a = state.kept_a.edge, &of_b = state.kept_b.edge;
+  const std::uint8_t* const i = pairs.a + first;
+  const std::uint8_t* const j = pairs.b + first;
+  LaneVectors to;
+  gather(out.p, a, of_a[i[0]].from, of_a[i[1]].from, of_a[i[2]].from, of_a[i[3]].from);
+  gather(to, a, of_a[i[0]].to, of_a[i[1]].to, of_a[i[2]].to, of_a[i[3]].to);
+  out.e = {out.p.x - to.x, out.p.y - to.y, out.p.z - to.z};
+  gather(out.q, b, of_b[j[0]].from, of_b[j[1]].from, of_b[j[2]].from, of_b[j[3]].from);
+  gather(to, b, of_b[j[0]].to, of_b[j[1]].to, of_b[j[2]].to, of_b[j[3]].to);
+  out.f = {to.x - out.q.x, to.y - out.q.y, to.z - out.q.z};
+  load(out.sign, pairs.sign + first);
+}
+
+/// How four edges rise along the facets beside others.
+template <class Size>
+PD_INLINE void take_rises(Lanes& left, Lanes& right, const LaneVectors& edges, const Planes<Size>& planes,
+                          const GaussEdge (&beside)[Size::kEdges + 1], const std::uint8_t* which) {
+  const GaussEdge* e[kLanes];
+  for (int lane = 0; lane < kLanes; ++lane) e[lane] = beside + which[lane];
+  const VertexArrays normals{planes.nx, planes.ny, planes.nz, Size::kFacets};
+  LaneVectors of_left, of_right;
+  gather(of_left, normals, e[0]->left, e[1]->left, e[2]->left, e[3]->left);
+  gather(of_right, normals, e[0]->right, e[1]->right, e[2]->right, e[3]->right);
+  dot(left, of_left, edges);
+  dot(right, of_right, edges);
+}
+
+/// Tells sides in double precision. Gives each pair its sign; returns those that cross or may.
+template <class Size>
+PD_INLINE void tell_precisely(Flags& crossing, LanePairs& pairs, const Crossings<Size>& all, int first,
+                              const KernelState<Size>& state, const GaussSatErrors& errors) {
+  Lanes of_a[2], of_b[2];
+  take_rises(of_a[0], of_a[1], pairs.e, state.planes_b, state.kept_b.edge, all.b + first);
+  take_rises(of_b[0], of_b[1], pairs.f, state.planes_a, state.kept_a.edge, all.a + first);
+  const Lanes most_a = Lanes{} + errors.fine_side_a, most_b = Lanes{} + errors.fine_side_b;
+  const Flags inwards = (of_a[0] <= most_a) & (of_a[1] >= -most_a) & (of_b[0] >= -most_b) & (of_b[1] <= most_b);
+  const Flags outwards = (of_a[0] >= -most_a) & (of_a[1] <= most_a) & (of_b[0] <= most_b) & (of_b[1] >= -most_b);
+  const Lanes zero = {}, one = zero + 1.0;
+  pairs.sign = inwards ? (outwards ? zero : -one) : one;
+  crossing = inwards | outwards;
+}
+
 /// Rounding moves corners off the plane, and the piece of P lies above the lowest.
-PD_INLINE void measure(Parallelograms& out, const LaneVectors& p, LaneVectors& e, const LaneVectors& q, LaneVectors& f,
-                       const Lanes& sign, const double (&offset)[3]) {
+PD_INLINE void measure(Parallelograms& out, const LanePairs& of, const double (&offset)[3]) {
   const Lanes zero = {0, 0, 0, 0};
-  e.x = p.x - e.x;
-  e.y = p.y - e.y;
-  e.z = p.z - e.z;
-  f.x = f.x - q.x;
-  f.y = f.y - q.y;
-  f.z = f.z - q.z;
-  const LaneVectors n = {sign * (f.y * e.z - f.z * e.y), sign * (f.z * e.x - f.x * e.z),
-                         sign * (f.x * e.y - f.y * e.x)};
+  const LaneVectors &p = of.p, &e = of.e, &q = of.q, &f = of.f;
+  const LaneVectors n = {of.sign * (f.y * e.z - f.z * e.y), of.sign * (f.z * e.x - f.x * e.z),
+                         of.sign * (f.x * e.y - f.y * e.x)};
   const Lanes height = n.x * (q.x + p.x + offset[0]) + n.y * (q.y + p.y + offset[1]) + n.z * (q.z + p.z + offset[2]);
   Lanes along_e, along_f, of_e, of_f;
   dot(along_e, n, e);
@@ -125,7 +98,8 @@ PD_INLINE void piece_of_edges(GaussPiece& out, const KeptEdges<Size>& kept_a, co
 struct Found {
   NearGaussPieces* near;  ///< or nullptr
   ThinPairs& thin;
-  double facet_key;  ///< slivers that are farther are not listed
+  double facet_key;              ///< slivers that are farther are not listed
+  const GaussSatErrors* doubts;  ///< sides are told again in double precision; or nullptr
 };
 
 /// Slivers are no winners: their normals are badly known.
@@ -144,20 +118,23 @@ PD_INLINE void nearest_crossing(Nearest& best, Crossings<Size>& pairs, const Ker
   }
   Lanes id = {0, 1, 2, 3}, best_key = none, best_id = none, others = none;
   for (int k = 0; k < pairs.count; k += kLanes) {
-    LaneVectors p, e, q, f;
-    Lanes sign;
     const std::uint8_t* const i = pairs.a + k;
     const std::uint8_t* const j = pairs.b + k;
-    gather(p, a, kept_a.edge[i[0]].from, kept_a.edge[i[1]].from, kept_a.edge[i[2]].from, kept_a.edge[i[3]].from);
-    gather(e, a, kept_a.edge[i[0]].to, kept_a.edge[i[1]].to, kept_a.edge[i[2]].to, kept_a.edge[i[3]].to);
-    gather(q, b, kept_b.edge[j[0]].from, kept_b.edge[j[1]].from, kept_b.edge[j[2]].from, kept_b.edge[j[3]].from);
-    gather(f, b, kept_b.edge[j[0]].to, kept_b.edge[j[1]].to, kept_b.edge[j[2]].to, kept_b.edge[j[3]].to);
-    load(sign, pairs.sign + k);
+    LanePairs four;
+    take_pairs(four, pairs, k, state, a, b);
+    Flags is_pair = id < static_cast<double>(pairs.count);
+    if (found.doubts != nullptr) {
+      Flags crossing;
+      tell_precisely(crossing, four, pairs, k, state, *found.doubts);
+      is_pair &= crossing;
+      store(pairs.sign + k, four.sign);
+    }
+    const Lanes& sign = four.sign;
     Parallelograms of;
-    measure(of, p, e, q, f, sign, offset);
+    measure(of, four, offset);
     Lanes measured;
     key_of(measured, of.lowest, of.squared);
-    const Flags is_pair = id < static_cast<double>(pairs.count), is_thin = of.squared <= kThin * of.edges;
+    const Flags is_thin = of.squared <= kThin * of.edges;
     const Lanes key = is_pair & ~is_thin ? measured : none;
     const Lanes lost = key < best_key ? best_key : key;
     best_id = key < best_key ? id : best_id;
@@ -239,16 +216,25 @@ PD_INLINE void nearest_of_all(NearestByGaussMaps& out, const GaussSatBody& a, co
     list_near_facets(*near, true, a, state.planes_a, of_b, b.posed, errors.height);
     list_near_facets(*near, false, b, state.planes_b, of_a, a.posed, errors.height);
   }
+  ArcSides<Size> arcs_a, arcs_b;
+  std::uint32_t open = 0;
+  take_arcs(arcs_b, open, state.kept_b, of_a, state.kept_a, state.planes_b.blocks(), errors.side_a, true);
+  take_arcs(arcs_a, open, state.kept_a, of_b, state.kept_b, state.planes_a.blocks(), errors.side_b, false);
   Crossings<Size> pairs;
-  const bool told = tell_sides(state.sides_a, state.kept_a, of_a, state.planes_b.blocks(), true) > errors.side_a &&
-                    tell_sides(state.sides_b, state.kept_b, of_b, state.planes_a.blocks(), false) > errors.side_b;
-  const bool listed = told ? list_crossings(pairs, state) : list_in_double_precision(a, b, errors, state, pairs);
-  if (!listed) return;
+  RoughPairs<Size> rough;
+  const bool many = RoughPairs<Size>::pays(state);
+  if (many) {
+    rough.begin(state, a.posed, b.posed, offset, errors.reach, radius);
+    rough.lowers = near == nullptr;
+  }
+  if (!list_pairs(pairs, arcs_a, state.kept_a.count, arcs_b, state.kept_b.count, many ? &rough : nullptr)) return;
+  if (many) out.others_key = rough.beyond() < out.others_key ? rough.beyond() : out.others_key;
   out.outcome = NearestByGaussMaps::Outcome::found;
   out.pieces += pairs.count;
   if (pairs.count > 0) {
     Nearest crossing{kNone, kNone, 0};
-    nearest_crossing(crossing, pairs, state, a.posed, b.posed, offset, {near, thin, facet.key});
+    nearest_crossing(crossing, pairs, state, a.posed, b.posed, offset,
+                     {near, thin, facet.key, open != 0 ? &errors : nullptr});
     const bool wins = crossing.key < out.key;
     const double lost = wins ? out.key : crossing.key, others = wins ? crossing.others : out.others_key;
     out.others_key = lost < others ? lost : others;
