@@ -79,13 +79,11 @@ struct ArcSides {
   }
 };
 
-/// @param open     gets bits where a side is open
 /// @param heights  of the other body's vertices along the facets beside `edges`, in so many blocks
 /// @param error    of an edge of the other body; it runs backwards if it is one of -A
 template <class Size>
-PD_INLINE void take_arcs(ArcSides<Size>& out, std::uint32_t& open, const KeptEdges<Size>& edges,
-                         const Heights<Size>& heights, const KeptEdges<Size>& others, int blocks, float error,
-                         bool backwards) {
+PD_INLINE void take_arcs(ArcSides<Size>& out, const KeptEdges<Size>& edges, const Heights<Size>& heights,
+                         const KeptEdges<Size>& others, int blocks, float error, bool backwards) {
   Sides<Size> sides;
   tell_sides(sides, others, heights, blocks, error, backwards);
   for (int word = 0; word < kWords<Size>; ++word) {
@@ -95,7 +93,6 @@ PD_INLINE void take_arcs(ArcSides<Size>& out, std::uint32_t& open, const KeptEdg
       out.falling[word][i] = falling[left] & rising[right];
       out.rising[word][i] = rising[left] & falling[right];
       out.open[word][i] = (falling[left] & rising[left]) | (falling[right] & rising[right]);
-      open |= out.open[word][i];
     }
   }
 }
@@ -207,38 +204,63 @@ struct RoughPairs {
   }
 };
 
+/// Whether the product of two edges, b x a, may point inwards, and outwards, told in double precision.
+template <class Size>
+PD_INLINE void tell_pair(bool& inwards, bool& outwards, const GaussEdge& of_a, const GaussEdge& of_b,
+                         const KernelState<Size>& state, const VertexArrays& a, const VertexArrays& b,
+                         const GaussSatErrors& errors) {
+  const Planes<Size>&along_b = state.planes_b, &along_a = state.planes_a;
+  const auto rise = [&](const double* va, const double* vb, const double* nb, const double* na) {
+    const double e = va[of_a.from] - va[of_a.to], f = vb[of_b.to] - vb[of_b.from];
+    return Lanes{nb[of_b.left], nb[of_b.right], na[of_a.left], na[of_a.right]} * Lanes{e, e, f, f};
+  };
+  const Lanes rises = rise(a.x, b.x, along_b.nx, along_a.nx) + rise(a.y, b.y, along_b.ny, along_a.ny) +
+                      rise(a.z, b.z, along_b.nz, along_a.nz);
+  const Lanes most = {errors.fine_side_a, errors.fine_side_a, errors.fine_side_b, errors.fine_side_b};
+  // The edge of A may fall and then rise along the facets beside that of B, which then rises and falls, or both vice
+  // versa.
+  constexpr unsigned kOuter = 0b1001, kInner = 0b0110;
+  const unsigned falling = mask_of_four(rises <= most), rising = mask_of_four(rises >= -most);
+  inwards = ((falling & kOuter) | (rising & kInner)) == (kOuter | kInner);
+  outwards = ((rising & kOuter) | (falling & kInner)) == (kOuter | kInner);
+}
+
 /// Lists the pairs that cross or may. Two edges cross where one falls and then rises along the facets beside the other,
 /// while the other rises and then falls along those beside it. False: there are too many.
 /// @param rough  leaves out pairs that are farther; or nullptr
 template <class Size>
-PD_INLINE bool list_pairs(Crossings<Size>& out, const ArcSides<Size>& arcs_a, int count_a, const ArcSides<Size>& arcs_b,
-                          int count_b, RoughPairs<Size>* rough) {
+PD_INLINE bool list_pairs(Crossings<Size>& out, const ArcSides<Size>& arcs_a, const ArcSides<Size>& arcs_b,
+                          const KernelState<Size>& state, const VertexArrays& a, const VertexArrays& b,
+                          const GaussSatErrors& errors, RoughPairs<Size>* rough) {
   using Arcs = ArcSides<Size>;
   using Word = typename Size::Word;
-  // By whether the product of the edges, b x a, may point inwards, and outwards.
-  constexpr double kSigns[4] = {0, -1, 1, 0};
+  constexpr double kSigns[4] = {0, -1, 1, 0};  // by whether it may point inwards, and outwards
+  const int count_a = state.kept_a.count;
   int count = 0;
-  for (int j = 0; j < count_b && count <= Size::kMostCrossings; ++j) {
-    Word inwards = Arcs::of(arcs_b.falling, j), outwards = Arcs::of(arcs_b.rising, j), pairs = inwards | outwards;
-    if (!kIsSmall<Size> && rough != nullptr) {
-      inwards &= Arcs::across(arcs_a.rising, count_a, j);
-      outwards &= Arcs::across(arcs_a.falling, count_a, j);
-      const Word open = Arcs::of(arcs_b.open, j) | Arcs::across(arcs_a.open, count_a, j);
-      pairs = rough->near(j, inwards, outwards, open);
+  for (int j = 0; j < state.kept_b.count; ++j) {
+    Word inwards = Arcs::of(arcs_b.falling, j) & Arcs::across(arcs_a.rising, count_a, j);
+    Word outwards = Arcs::of(arcs_b.rising, j) & Arcs::across(arcs_a.falling, count_a, j);
+    Word pairs = inwards | outwards;
+    const Word open = (Arcs::of(arcs_b.open, j) | Arcs::across(arcs_a.open, count_a, j)) & pairs;
+    if (!kIsSmall<Size> && rough != nullptr) pairs = rough->near(j, inwards, outwards, open);
+    for (Word bits = open & pairs; bits != 0; bits &= bits - 1) {
+      const int i = std::countr_zero(bits);
+      bool in, out_of;
+      tell_pair(in, out_of, state.kept_a.edge[i], state.kept_b.edge[j], state, a, b, errors);
+      inwards = (inwards & ~(Word{1} << i)) | Word{in} << i;
+      outwards = (outwards & ~(Word{1} << i)) | Word{out_of} << i;
     }
-    for (; pairs != 0; pairs &= pairs - 1) {
-      const int i = std::countr_zero(pairs);
-      const Word in = inwards >> i & Arcs::of(arcs_a.rising, i) >> j & 1;
-      const Word up = outwards >> i & Arcs::of(arcs_a.falling, i) >> j & 1;
-      // Written in any case, and counted where they cross.
+    for (Word bits = pairs & (inwards | outwards); bits != 0; bits &= bits - 1) {
+      const int i = std::countr_zero(bits);
       out.a[count] = static_cast<std::uint8_t>(i);
       out.b[count] = static_cast<std::uint8_t>(j);
-      out.sign[count] = kSigns[in | up << 1];
-      count += static_cast<int>(in | up);
+      out.sign[count] = kSigns[(inwards >> i & 1) | (outwards >> i & 1) << 1];
+      ++count;
     }
+    if (count > Size::kMostCrossings) return false;
   }
   out.count = count;
-  return count <= Size::kMostCrossings;
+  return true;
 }
 
 }  // namespace pd::detail::gauss_sat

@@ -10,69 +10,24 @@ namespace pd::detail {
 namespace gauss_sat {
 namespace {
 
-/// Four pairs of an edge of -A and one of B, a pair a lane.
-struct LanePairs {
-  LaneVectors p, e, q, f;  ///< where they start, and the edges; that of -A runs backwards
-  Lanes sign;
-};
-
-/// Their parallelograms.
+/// Parallelograms of an edge of -A from p to e and one of B from q to f.
 struct Parallelograms {
   Lanes lowest, squared;  ///< height of the lowest corner along the normal, sign * b x a, and its squared length
   Lanes edges;            ///< product of the edges' squared lengths
 };
 
-template <class Size>
-PD_INLINE void take_pairs(LanePairs& out, const Crossings<Size>& pairs, int first, const KernelState<Size>& state,
-                          const VertexArrays& a, const VertexArrays& b) {
-  const auto &of_a = state.kept_a.edge, &of_b = state.kept_b.edge;
-  const std::uint8_t* const i = pairs.a + first;
-  const std::uint8_t* const j = pairs.b + first;
-  LaneVectors to;
-  gather(out.p, a, of_a[i[0]].from, of_a[i[1]].from, of_a[i[2]].from, of_a[i[3]].from);
-  gather(to, a, of_a[i[0]].to, of_a[i[1]].to, of_a[i[2]].to, of_a[i[3]].to);
-  out.e = {out.p.x - to.x, out.p.y - to.y, out.p.z - to.z};
-  gather(out.q, b, of_b[j[0]].from, of_b[j[1]].from, of_b[j[2]].from, of_b[j[3]].from);
-  gather(to, b, of_b[j[0]].to, of_b[j[1]].to, of_b[j[2]].to, of_b[j[3]].to);
-  out.f = {to.x - out.q.x, to.y - out.q.y, to.z - out.q.z};
-  load(out.sign, pairs.sign + first);
-}
-
-/// How four edges rise along the facets beside others.
-template <class Size>
-PD_INLINE void take_rises(Lanes& left, Lanes& right, const LaneVectors& edges, const Planes<Size>& planes,
-                          const GaussEdge (&beside)[Size::kEdges + 1], const std::uint8_t* which) {
-  const GaussEdge* e[kLanes];
-  for (int lane = 0; lane < kLanes; ++lane) e[lane] = beside + which[lane];
-  const VertexArrays normals{planes.nx, planes.ny, planes.nz, Size::kFacets};
-  LaneVectors of_left, of_right;
-  gather(of_left, normals, e[0]->left, e[1]->left, e[2]->left, e[3]->left);
-  gather(of_right, normals, e[0]->right, e[1]->right, e[2]->right, e[3]->right);
-  dot(left, of_left, edges);
-  dot(right, of_right, edges);
-}
-
-/// Tells sides in double precision. Gives each pair its sign; returns those that cross or may.
-template <class Size>
-PD_INLINE void tell_precisely(Flags& crossing, LanePairs& pairs, const Crossings<Size>& all, int first,
-                              const KernelState<Size>& state, const GaussSatErrors& errors) {
-  Lanes of_a[2], of_b[2];
-  take_rises(of_a[0], of_a[1], pairs.e, state.planes_b, state.kept_b.edge, all.b + first);
-  take_rises(of_b[0], of_b[1], pairs.f, state.planes_a, state.kept_a.edge, all.a + first);
-  const Lanes most_a = Lanes{} + errors.fine_side_a, most_b = Lanes{} + errors.fine_side_b;
-  const Flags inwards = (of_a[0] <= most_a) & (of_a[1] >= -most_a) & (of_b[0] >= -most_b) & (of_b[1] <= most_b);
-  const Flags outwards = (of_a[0] >= -most_a) & (of_a[1] <= most_a) & (of_b[0] <= most_b) & (of_b[1] >= -most_b);
-  const Lanes zero = {}, one = zero + 1.0;
-  pairs.sign = inwards ? (outwards ? zero : -one) : one;
-  crossing = inwards | outwards;
-}
-
 /// Rounding moves corners off the plane, and the piece of P lies above the lowest.
-PD_INLINE void measure(Parallelograms& out, const LanePairs& of, const double (&offset)[3]) {
+PD_INLINE void measure(Parallelograms& out, const LaneVectors& p, LaneVectors& e, const LaneVectors& q, LaneVectors& f,
+                       const Lanes& sign, const double (&offset)[3]) {
   const Lanes zero = {0, 0, 0, 0};
-  const LaneVectors &p = of.p, &e = of.e, &q = of.q, &f = of.f;
-  const LaneVectors n = {of.sign * (f.y * e.z - f.z * e.y), of.sign * (f.z * e.x - f.x * e.z),
-                         of.sign * (f.x * e.y - f.y * e.x)};
+  e.x = p.x - e.x;
+  e.y = p.y - e.y;
+  e.z = p.z - e.z;
+  f.x = f.x - q.x;
+  f.y = f.y - q.y;
+  f.z = f.z - q.z;
+  const LaneVectors n = {sign * (f.y * e.z - f.z * e.y), sign * (f.z * e.x - f.x * e.z),
+                         sign * (f.x * e.y - f.y * e.x)};
   const Lanes height = n.x * (q.x + p.x + offset[0]) + n.y * (q.y + p.y + offset[1]) + n.z * (q.z + p.z + offset[2]);
   Lanes along_e, along_f, of_e, of_f;
   dot(along_e, n, e);
@@ -98,8 +53,7 @@ PD_INLINE void piece_of_edges(GaussPiece& out, const KeptEdges<Size>& kept_a, co
 struct Found {
   NearGaussPieces* near;  ///< or nullptr
   ThinPairs& thin;
-  double facet_key;              ///< slivers that are farther are not listed
-  const GaussSatErrors* doubts;  ///< sides are told again in double precision; or nullptr
+  double facet_key;  ///< slivers that are farther are not listed
 };
 
 /// Slivers are no winners: their normals are badly known.
@@ -118,23 +72,20 @@ PD_INLINE void nearest_crossing(Nearest& best, Crossings<Size>& pairs, const Ker
   }
   Lanes id = {0, 1, 2, 3}, best_key = none, best_id = none, others = none;
   for (int k = 0; k < pairs.count; k += kLanes) {
+    LaneVectors p, e, q, f;
+    Lanes sign;
     const std::uint8_t* const i = pairs.a + k;
     const std::uint8_t* const j = pairs.b + k;
-    LanePairs four;
-    take_pairs(four, pairs, k, state, a, b);
-    Flags is_pair = id < static_cast<double>(pairs.count);
-    if (found.doubts != nullptr) {
-      Flags crossing;
-      tell_precisely(crossing, four, pairs, k, state, *found.doubts);
-      is_pair &= crossing;
-      store(pairs.sign + k, four.sign);
-    }
-    const Lanes& sign = four.sign;
+    gather(p, a, kept_a.edge[i[0]].from, kept_a.edge[i[1]].from, kept_a.edge[i[2]].from, kept_a.edge[i[3]].from);
+    gather(e, a, kept_a.edge[i[0]].to, kept_a.edge[i[1]].to, kept_a.edge[i[2]].to, kept_a.edge[i[3]].to);
+    gather(q, b, kept_b.edge[j[0]].from, kept_b.edge[j[1]].from, kept_b.edge[j[2]].from, kept_b.edge[j[3]].from);
+    gather(f, b, kept_b.edge[j[0]].to, kept_b.edge[j[1]].to, kept_b.edge[j[2]].to, kept_b.edge[j[3]].to);
+    load(sign, pairs.sign + k);
     Parallelograms of;
-    measure(of, four, offset);
+    measure(of, p, e, q, f, sign, offset);
     Lanes measured;
     key_of(measured, of.lowest, of.squared);
-    const Flags is_thin = of.squared <= kThin * of.edges;
+    const Flags is_pair = id < static_cast<double>(pairs.count), is_thin = of.squared <= kThin * of.edges;
     const Lanes key = is_pair & ~is_thin ? measured : none;
     const Lanes lost = key < best_key ? best_key : key;
     best_id = key < best_key ? id : best_id;
@@ -217,9 +168,8 @@ PD_INLINE void nearest_of_all(NearestByGaussMaps& out, const GaussSatBody& a, co
     list_near_facets(*near, false, b, state.planes_b, of_a, a.posed, errors.height);
   }
   ArcSides<Size> arcs_a, arcs_b;
-  std::uint32_t open = 0;
-  take_arcs(arcs_b, open, state.kept_b, of_a, state.kept_a, state.planes_b.blocks(), errors.side_a, true);
-  take_arcs(arcs_a, open, state.kept_a, of_b, state.kept_b, state.planes_a.blocks(), errors.side_b, false);
+  take_arcs(arcs_a, state.kept_a, of_b, state.kept_b, state.planes_a.blocks(), errors.side_b, false);
+  take_arcs(arcs_b, state.kept_b, of_a, state.kept_a, state.planes_b.blocks(), errors.side_a, true);
   Crossings<Size> pairs;
   RoughPairs<Size> rough;
   const bool many = RoughPairs<Size>::pays(state);
@@ -227,14 +177,13 @@ PD_INLINE void nearest_of_all(NearestByGaussMaps& out, const GaussSatBody& a, co
     rough.begin(state, a.posed, b.posed, offset, errors.reach, radius);
     rough.lowers = near == nullptr;
   }
-  if (!list_pairs(pairs, arcs_a, state.kept_a.count, arcs_b, state.kept_b.count, many ? &rough : nullptr)) return;
+  if (!list_pairs(pairs, arcs_a, arcs_b, state, a.posed, b.posed, errors, many ? &rough : nullptr)) return;
   if (many) out.others_key = rough.beyond() < out.others_key ? rough.beyond() : out.others_key;
   out.outcome = NearestByGaussMaps::Outcome::found;
   out.pieces += pairs.count;
   if (pairs.count > 0) {
     Nearest crossing{kNone, kNone, 0};
-    nearest_crossing(crossing, pairs, state, a.posed, b.posed, offset,
-                     {near, thin, facet.key, open != 0 ? &errors : nullptr});
+    nearest_crossing(crossing, pairs, state, a.posed, b.posed, offset, {near, thin, facet.key});
     const bool wins = crossing.key < out.key;
     const double lost = wins ? out.key : crossing.key, others = wins ? crossing.others : out.others_key;
     out.others_key = lost < others ? lost : others;
