@@ -26,6 +26,9 @@ typedef float HalfFloats __attribute__((vector_size(16)));
 typedef std::int32_t HalfIds __attribute__((vector_size(16)));
 inline constexpr int kFloats = 8;
 
+typedef std::uint8_t Bytes __attribute__((vector_size(16)));
+inline constexpr int kBytes = 16;
+
 PD_INLINE void load(Lanes& to, const double* from) { __builtin_memcpy(&to, from, sizeof(Lanes)); }
 PD_INLINE void load(Floats& to, const float* from) { __builtin_memcpy(&to, from, sizeof(Floats)); }
 PD_INLINE void store(double* to, const Lanes& from) { __builtin_memcpy(to, &from, sizeof(Lanes)); }
@@ -68,6 +71,28 @@ PD_INLINE unsigned mask_of_four(const Flags& flags) {
 PD_INLINE unsigned mask_of_eight(const Ids& flags) {
   return half_mask(__builtin_shufflevector(flags, flags, 0, 1, 2, 3)) |
          half_mask(__builtin_shufflevector(flags, flags, 4, 5, 6, 7)) << 4;
+}
+
+/// Bit i of the result: byte i is 0.
+PD_INLINE unsigned mask_of_zeros(const Bytes& v) {
+#if defined(__SSE2__)
+  __m128i bytes;
+  __builtin_memcpy(&bytes, &v, sizeof(bytes));
+  return static_cast<unsigned>(_mm_movemask_epi8(_mm_cmpeq_epi8(bytes, _mm_setzero_si128())));
+#else
+  unsigned bits = 0;
+  for (int i = 0; i < kBytes; ++i) bits |= static_cast<unsigned>(v[i] == 0) << i;
+  return bits;
+#endif
+}
+
+/// Entries of a table by the last four bits of `at`.
+PD_INLINE void look_up(Bytes& out, const Bytes& table, const Bytes& at) {
+#if defined(__clang__)
+  for (int i = 0; i < kBytes; ++i) out[i] = table[at[i] % kBytes];
+#else
+  out = __builtin_shuffle(table, at);
+#endif
 }
 
 /// The greatest lane; any of them where one is not a number.

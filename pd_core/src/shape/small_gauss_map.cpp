@@ -21,6 +21,8 @@ void fill_small_gauss_map(const ConvexPolytope::Storage& s, SmallGaussMap& out) 
     const HalfEdge back = s.half_edge(e.twin);
     out.edge[count] = {static_cast<std::uint8_t>(e.origin), static_cast<std::uint8_t>(back.origin),
                        static_cast<std::uint8_t>(e.facet), static_cast<std::uint8_t>(back.facet)};
+    out.left[count] = out.edge[count].left;
+    out.right[count] = out.edge[count].right;
     ++count;
   }
   out.edges = static_cast<std::uint8_t>(count);

@@ -25,6 +25,7 @@ struct SmallGaussMap {
   /// Outward, as `ConvexPolytope::facet_normal`, and their product with a vertex of the facet.
   alignas(32) double nx[kFacetSlots], ny[kFacetSlots], nz[kFacetSlots], height[kFacetSlots];
   GaussEdge edge[kMostEdges];
+  std::uint8_t left[kMostEdges], right[kMostEdges];  ///< once more by edge
   std::uint8_t facets, edges;
 };
 

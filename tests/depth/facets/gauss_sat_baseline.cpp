@@ -4,7 +4,6 @@
 #define PD_ISA_BASELINE
 #endif
 #define nearest_by_gauss_maps nearest_by_gauss_maps_baseline
-#define list_in_double_precision list_in_double_precision_baseline
 #define bound_thin_pairs bound_thin_pairs_baseline
 #include "depth/facets/gauss_sat_doubts.cpp"
 #include "depth/facets/gauss_sat_kernels.cpp"

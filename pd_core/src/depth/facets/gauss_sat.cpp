@@ -144,7 +144,8 @@ GaussSatDepth gauss_sat_depth(const Pose& pose_a, const Pose& pose_b, const Poly
   if (!(growth_a > 0.5 && growth_b > 0.5)) return out;
   const Vec3& t = difference.offset();
   const double reach = difference.reach(), radius_a = difference.a().radius(), radius_b = difference.b().radius();
-  const GaussSatErrors errors{.height = kHeightError * reach,
+  const GaussSatErrors errors{.reach = reach,
+                              .height = kHeightError * reach,
                               .side_a = static_cast<float>(kRiseError * radius_a),
                               .side_b = static_cast<float>(kRiseError * radius_b),
                               .fine_side_a = kFineRiseError * radius_a,

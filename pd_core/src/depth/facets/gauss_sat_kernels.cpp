@@ -3,84 +3,12 @@
 #include <bit>
 #include <limits>
 
-#include "depth/facets/gauss_sat_planes.hpp"
+#include "depth/facets/gauss_sat_crossings.hpp"
 
 namespace pd::detail {
 
 namespace gauss_sat {
 namespace {
-
-template <class Size>
-PD_INLINE void tell_half(std::uint32_t* out, float& least, const KeptEdges<Size>& kept, int first,
-                         const Heights<Size>& heights, int blocks, bool backwards) {
-  constexpr int kHalf = Sides<Size>::kHalf;
-  const int end = kept.count < first + kHalf ? kept.count : first + kHalf;
-  Floats least_size = Floats{} + std::numeric_limits<float>::max();
-  for (int k = 0; k < blocks; ++k) {
-    Bits bits = {};
-    for (int i = first; i < end; ++i) {
-      Floats high, low;
-      const GaussEdge& e = kept.edge[i];
-      load(high, heights.row[backwards ? e.from : e.to] + kFloats * k);
-      load(low, heights.row[backwards ? e.to : e.from] + kFloats * k);
-      const Floats rise = high - low;
-      Bits as_bits;
-      __builtin_memcpy(&as_bits, &rise, sizeof(as_bits));
-      bits |= as_bits >> 31 << (i - first);
-      as_bits &= ~kSign;
-      Floats size;
-      __builtin_memcpy(&size, &as_bits, sizeof(size));
-      least_size = size < least_size ? size : least_size;
-    }
-    __builtin_memcpy(out + kFloats * k, &bits, sizeof(bits));
-  }
-  for (int i = 0; i < kFloats; ++i) least = least_size[i] < least ? least_size[i] : least;
-}
-
-/// Bit i of a facet's word: kept edge i descends along it. Returns the least rise or descent.
-template <class Size>
-PD_INLINE float tell_sides(Sides<Size>& out, const KeptEdges<Size>& kept, const Heights<Size>& heights, int blocks,
-                           bool backwards) {
-  float least = std::numeric_limits<float>::max();
-  tell_half(out.low, least, kept, 0, heights, blocks, backwards);
-  if constexpr (!kIsSmall<Size>) {
-    if (kept.count > Sides<Size>::kHalf) {
-      tell_half(out.high, least, kept, Sides<Size>::kHalf, heights, blocks, backwards);
-    } else {
-      for (int k = 0; k < kFloats * blocks; ++k) out.high[k] = 0;
-    }
-  }
-  return least;
-}
-
-/// Arc j of B crosses the plane of arc i of -A where its two facets lie on different sides of it, and the other way
-/// round; of two arcs that do both, on the same half of the sphere where these sides are opposite. False: too many.
-template <class Size>
-PD_INLINE bool list_crossings(Crossings<Size>& out, const KernelState<Size>& state) {
-  using Word = typename Size::Word;
-  constexpr double kSigns[2] = {1, -1};
-  const KeptEdges<Size>&kept_a = state.kept_a, &kept_b = state.kept_b;
-  Word left_of[Size::kKept], right_of[Size::kKept];
-  for (int i = 0; i < kept_a.count; ++i) {
-    left_of[i] = state.sides_b.of(kept_a.edge[i].left);
-    right_of[i] = left_of[i] ^ state.sides_b.of(kept_a.edge[i].right);
-  }
-  int count = 0;
-  for (int j = 0; j < kept_b.count; ++j) {
-    const Word left = state.sides_a.of(kept_b.edge[j].left), across = left ^ state.sides_a.of(kept_b.edge[j].right);
-    for (Word bits = across; bits != 0; bits &= bits - 1) {
-      const int i = std::countr_zero(bits);
-      // Written in any case, and counted where they cross.
-      out.a[count] = static_cast<std::uint8_t>(i);
-      out.b[count] = static_cast<std::uint8_t>(j);
-      out.sign[count] = kSigns[left >> i & 1];
-      count += static_cast<int>((right_of[i] >> j) & ((left >> i) ^ (left_of[i] >> j)) & 1);
-    }
-    if (count > Size::kMostCrossings) return false;
-  }
-  out.count = count;
-  return true;
-}
 
 /// Parallelograms of an edge of -A from p to e and one of B from q to f.
 struct Parallelograms {
@@ -239,11 +167,18 @@ PD_INLINE void nearest_of_all(NearestByGaussMaps& out, const GaussSatBody& a, co
     list_near_facets(*near, true, a, state.planes_a, of_b, b.posed, errors.height);
     list_near_facets(*near, false, b, state.planes_b, of_a, a.posed, errors.height);
   }
+  ArcSides<Size> arcs_a, arcs_b;
+  take_arcs(arcs_a, state.kept_a, of_b, state.kept_b, state.planes_a.blocks(), errors.side_b, false);
+  take_arcs(arcs_b, state.kept_b, of_a, state.kept_a, state.planes_b.blocks(), errors.side_a, true);
   Crossings<Size> pairs;
-  const bool told = tell_sides(state.sides_a, state.kept_a, of_a, state.planes_b.blocks(), true) > errors.side_a &&
-                    tell_sides(state.sides_b, state.kept_b, of_b, state.planes_a.blocks(), false) > errors.side_b;
-  const bool listed = told ? list_crossings(pairs, state) : list_in_double_precision(a, b, errors, state, pairs);
-  if (!listed) return;
+  RoughPairs<Size> rough;
+  const bool many = RoughPairs<Size>::pays(state);
+  if (many) {
+    rough.begin(state, a.posed, b.posed, offset, errors.reach, radius);
+    rough.lowers = near == nullptr;
+  }
+  if (!list_pairs(pairs, arcs_a, arcs_b, state, a.posed, b.posed, errors, many ? &rough : nullptr)) return;
+  if (many) out.others_key = rough.beyond() < out.others_key ? rough.beyond() : out.others_key;
   out.outcome = NearestByGaussMaps::Outcome::found;
   out.pieces += pairs.count;
   if (pairs.count > 0) {

@@ -3,9 +3,9 @@
 /// body or to two edges whose arcs cross (Gregorius, "The separating axis test between convex polyhedra", GDC 2013).
 ///
 /// Heights of vertices along facets in single precision tell which facets may be the nearest, which edges may belong to
-/// a facet of P that is as near (arc_culling.hpp), and on which side of a facet's normal an edge runs. Sides that
-/// single precision leaves open are told in double precision. An edge's sides for all edges of the other body are bits
-/// of one word, so that crossings are found many at a time; only those are measured, in double precision.
+/// a facet of P that is as near (arc_culling.hpp), which pairs of edges cross, or may, and which of many pairs may be
+/// as near (gauss_sat_crossings.hpp). Only those are measured, in double precision, which also tells the sides that
+/// single precision leaves open.
 ///
 /// One text for bodies of at most eight vertices, whose arrays are small and laid out beforehand, and for bodies of at
 /// most 32. Compiled for several instruction sets; every lane on its own: the same bits on each.
@@ -106,6 +106,7 @@ struct NearestByGaussMaps {
 
 /// What rounding may add.
 struct GaussSatErrors {
+  double reach;   ///< of P from its middle
   double height;  ///< of a facet's plane in P, by single precision
   float side_a;   ///< of an edge of A along a facet of B, by single precision
   float side_b;

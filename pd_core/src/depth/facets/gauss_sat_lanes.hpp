@@ -58,19 +58,6 @@ struct KeptEdges {
   GaussEdge edge[Size::kEdges + 1];
 };
 
-/// By facet of one body: a set of kept edges of the other; two words of 32 each, or one.
-template <class Size>
-struct Sides {
-  static constexpr int kHalf = 32;
-  alignas(32) std::uint32_t low[Size::kFacets];
-  alignas(32) std::uint32_t high[kIsSmall<Size> ? 1 : Size::kFacets];
-
-  [[nodiscard]] PD_INLINE typename Size::Word of(int facet) const {
-    if constexpr (kIsSmall<Size>) return low[facet];
-    return low[facet] | std::uint64_t{high[kIsSmall<Size> ? 0 : facet]} << kHalf;
-  }
-};
-
 /// Pairs of edges whose arcs cross.
 template <class Size>
 struct Crossings {
@@ -106,14 +93,7 @@ template <class Size>
 struct KernelState {
   Planes<Size> planes_a, planes_b;
   KeptEdges<Size> kept_a, kept_b;
-  Sides<Size> sides_a, sides_b;  ///< edges of A by facets of B, edges of B by facets of A
 };
-
-/// Tells all sides in double precision and lists the pairs that cross or may. False: there are too many.
-bool list_in_double_precision(const GaussSatBody& a, const GaussSatBody& b, const GaussSatErrors& errors,
-                              const KernelState<Small>& state, Crossings<Small>& out);
-bool list_in_double_precision(const GaussSatBody& a, const GaussSatBody& b, const GaussSatErrors& errors,
-                              const KernelState<Middle>& state, Crossings<Middle>& out);
 
 /// Slivers lie above their lowest corner along any vector: bounds them by the one along which that is highest, of the
 /// normals beside their edges, the middles between those, and their own. Drops those that are `level` or farther.

@@ -202,15 +202,17 @@ PD_INLINE void nearest_facet(Nearest& best, VertexSets<Size>& tops, const Planes
     Lanes heights[Size::kVertices / kLanes];
     const double top = top_along(f, planes, other, heights);
     const double key = key_of(planes.own[f] + top, planes.squared[f]);
-    std::uint32_t highest = 0;
-    for (int v = 0; v < other.count; v += kLanes) highest |= mask_of_four(heights[v / kLanes] >= top) << v;
-    tops.of[f] = highest << VertexSets<Size>::kFirst;
     const double lost = key < best.key ? best.key : key;
     best.others = lost < best.others ? lost : best.others;
     if (key < best.key) {
       best.key = key;
       best.id = first_id + f;
     }
+    const double as_far = __builtin_sqrt(best.key * planes.squared[f]) - planes.own[f];
+    const double far = as_far < top ? as_far : top;
+    std::uint32_t highest = 0;
+    for (int v = 0; v < other.count; v += kLanes) highest |= mask_of_four(heights[v / kLanes] >= far) << v;
+    tops.of[f] = highest << VertexSets<Size>::kFirst;
   }
 }
 
@@ -299,11 +301,26 @@ PD_INLINE bool keep_near_edges(KeptEdges<Size>& out, const GaussSatBody& body, c
   int count = 0;
   if constexpr (kIsSmall<Size>) {
     const SmallGaussMap& map = static_cast<const SmallBodyStorage&>(body.storage).gauss_map;
-    for (int e = 0; e < map.edges; ++e) {
-      // Written in any case and counted where it stays: no branch to guess.
-      out.edge[count] = map.edge[e];
-      count += static_cast<int>((far[map.edge[e].left] & far[map.edge[e].right]) == 0);
+    // The last byte of each word: eight vertices.
+    typedef std::uint8_t WordBytes __attribute__((vector_size(32)));
+    static_assert(Size::kFacets == kBytes && VertexSets<Size>::kFirst == 24);
+    WordBytes words[2];
+    __builtin_memcpy(words, far, sizeof(words));
+    constexpr int k = std::endian::native == std::endian::little ? 3 : 0;
+    const Bytes by_facet =
+        __builtin_shufflevector(words[0], words[1], k, k + 4, k + 8, k + 12, k + 16, k + 20, k + 24, k + 28, k + 32,
+                                k + 36, k + 40, k + 44, k + 48, k + 52, k + 56, k + 60);
+    std::uint32_t kept = 0;
+    for (const int e : {0, Size::kEdges - kBytes}) {
+      Bytes left, right;
+      __builtin_memcpy(&left, map.left + e, sizeof(left));
+      __builtin_memcpy(&right, map.right + e, sizeof(right));
+      look_up(left, by_facet, left);
+      look_up(right, by_facet, right);
+      kept |= mask_of_zeros(left & right) << e;
     }
+    for (kept &= (1U << map.edges) - 1; kept != 0; kept &= kept - 1)
+      out.edge[count++] = map.edge[std::countr_zero(kept)];
   } else {
     // Half-edges lie in order round their origins: to the right of each is what is to the left of the one before.
     const ConvexPolytope::Storage& s = body.storage;
