@@ -3,7 +3,7 @@
 # inputs, then mutations that follow coverage. Ends with the first law that breaks; the input that broke it stands in the folder
 # of the findings. Inputs that reach something new are kept in the build folder from run to run.
 #
-#   [ENGINE=afl] tests/long/fuzz.sh [SECONDS_PER_TARGET [BUILD_FOLDER [TARGET...]]]        2400 build/fuzz pairs lines meshes structures
+#   [ENGINE=afl] tests/long/fuzz.sh [SECONDS_PER_TARGET [BUILD_FOLDER [TARGET...]]]        2400 build/fuzz pairs lines meshes structures worlds
 #
 # Needs Clang with its libFuzzer and sanitizers (Debian: clang-14, libclang-rt-14-dev), or afl++. Other fuzzing: run.sh, without
 # instrumentation. The last run stands in last_run.txt.
@@ -17,7 +17,7 @@ seconds=${1:-2400}
 build=${2:-build/fuzz}
 shift $(($# < 2 ? $# : 2))
 targets=("$@")
-((${#targets[@]} > 0)) || targets=(pairs lines meshes structures)
+((${#targets[@]} > 0)) || targets=(pairs lines meshes structures worlds)
 
 # The sanitizers of the preset asan-ubsan.
 sanitizers='-fsanitize=address,undefined -fno-sanitize=null,alignment -fno-sanitize-recover=all'
@@ -31,7 +31,7 @@ case ${engine} in
 esac
 cmake -S . -B "${build}" -G Ninja --log-level=ERROR "${pd_launcher[@]}" "-DCMAKE_CXX_COMPILER=${compiler}" \
   -DCMAKE_BUILD_TYPE=Release '-DCMAKE_CXX_FLAGS_RELEASE=-O1 -g1' "-DCMAKE_CXX_FLAGS=${coverage} ${sanitizers} -fno-omit-frame-pointer" \
-  -DCMAKE_UNITY_BUILD=ON -DPD_PRECOMPILED_HEADERS=OFF -DPD_FUZZ=ON -DPD_WITH_BULLET=OFF -DPD_WITH_MUJOCO=OFF -DPD_WITH_FCL=OFF -DPD_WITH_ODE=OFF -DPD_WITH_DART=OFF -DPD_WITH_RENDER=OFF \
+  -DCMAKE_UNITY_BUILD=ON -DPD_PRECOMPILED_HEADERS=OFF -DPD_FUZZ=ON -DPD_WITH_MUJOCO=OFF -DPD_WITH_FCL=OFF -DPD_WITH_ODE=OFF -DPD_WITH_DART=OFF -DPD_WITH_RENDER=OFF \
   -DPD_WITH_PYTHON=OFF -DPD_WITH_BENCH=OFF
 cmake --build "${build}" --target "${targets[@]/#/fuzz_}"
 

@@ -20,7 +20,7 @@ mkdir -p "$findings"
 
 {
   printf 'date %s, commit %s, %s s a target\n' "$(date -u +%F)" "$(git rev-parse --short HEAD)" "$seconds"
-  for target in pairs lines meshes structures; do
+  for target in pairs lines meshes structures worlds; do
     [[ -x $build/fuzz_$target ]] || continue
     printf 'fuzz_%s: ' "$target"
     "$build/fuzz_$target" --seconds "$seconds" --seed 1 --keep "$findings/$target" "tests/fuzz/corpus/$target"

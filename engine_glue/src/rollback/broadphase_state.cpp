@@ -159,20 +159,24 @@ void BroadphaseState::restore_pairs(btCollisionWorld& world) const {
   btOverlappingPairCache* cache = world.getPairCache();
   btDispatcher* dispatcher = world.getDispatcher();
   btBroadphasePairArray& pairs = cache->getOverlappingPairArray();
-  // Taken out with their algorithms set aside, put back in the saved order.
-  std::map<std::pair<btBroadphaseProxy*, btBroadphaseProxy*>, btCollisionAlgorithm*> algorithms;
+  // Taken out with their algorithms set aside, put back in the saved order. Those left over are freed by the proxies' numbers, for
+  // the order in which manifolds go is the order of those that stay, and addresses differ from run to run.
+  const auto numbers = [](const btBroadphaseProxy* a, const btBroadphaseProxy* b) {
+    return std::pair(a->m_uniqueId, b->m_uniqueId);
+  };
+  std::map<std::pair<int, int>, btCollisionAlgorithm*> algorithms;
   while (pairs.size() > 0) {
     btBroadphasePair& last = pairs[pairs.size() - 1];
     btBroadphaseProxy* const proxy0 = last.m_pProxy0;
     btBroadphaseProxy* const proxy1 = last.m_pProxy1;
-    algorithms[{proxy0, proxy1}] = last.m_algorithm;
+    algorithms[numbers(proxy0, proxy1)] = last.m_algorithm;
     last.m_algorithm = nullptr;
     cache->removeOverlappingPair(proxy0, proxy1, dispatcher);
   }
   std::vector<int> incomplete;
   for (const SavedPair& saved : pairs_) {
     btBroadphasePair* pair = cache->addOverlappingPair(saved.proxy0, saved.proxy1);
-    const auto found = algorithms.find({saved.proxy0, saved.proxy1});
+    const auto found = algorithms.find(numbers(saved.proxy0, saved.proxy1));
     if (pair == nullptr || saved.num_manifolds < 0) {
       continue;
     }
@@ -185,7 +189,7 @@ void BroadphaseState::restore_pairs(btCollisionWorld& world) const {
       incomplete.push_back(static_cast<int>(pair - &pairs[0]));
     }
   }
-  for (const auto& [proxies, algorithm] : algorithms) {
+  for (const auto& [pair_numbers, algorithm] : algorithms) {
     if (algorithm != nullptr) {
       free_algorithm(algorithm, dispatcher);
     }
