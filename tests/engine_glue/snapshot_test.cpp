@@ -194,6 +194,30 @@ TEST(BulletSnapshot, RefusesAWorldWithOtherBodiesOrJoints) {
   EXPECT_EQ(again.restore(), Restored::yes);
 }
 
+/// The sorted broadphase numbers the new body like the one that it replaces, and both lie at one address.
+TEST(BulletSnapshot, TellsABodyFromTheNextOneInItsPlace) {
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher(&configuration);
+  btAxisSweep3 broadphase(btVector3(-10, -10, -10), btVector3(10, 10, 10));
+  btSequentialImpulseConstraintSolver impulses;
+  btDiscreteDynamicsWorld world(&dispatcher, &broadphase, &impulses, &configuration);
+  btSphereShape ball(1);
+  const btRigidBody::btRigidBodyConstructionInfo info(1, nullptr, &ball, btVector3(1, 1, 1));
+  std::optional<btRigidBody> body(std::in_place, info);
+  world.addRigidBody(&*body);
+  const BulletSnapshot saved(world, nullptr);
+  world.removeRigidBody(&*body);
+  world.addRigidBody(&*body);
+  EXPECT_EQ(saved.restore(), Restored::yes) << "the same body, taken out and put back";
+  const int number = body->getBroadphaseHandle()->getUid();
+  world.removeRigidBody(&*body);
+  body.emplace(info);
+  world.addRigidBody(&*body);
+  ASSERT_EQ(body->getBroadphaseHandle()->getUid(), number);
+  EXPECT_EQ(saved.restore(), Restored::objects_differ);
+  world.removeRigidBody(&*body);
+}
+
 /// What a snapshot saved of the pairs is there although the solver is gone.
 TEST(BulletSnapshot, MayBeRestoredAfterTheSolver) {
   auto solver = std::make_unique<BulletPenetrationDepthSolver>();

@@ -1,13 +1,27 @@
 #include "rollback/world_objects.hpp"
 
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
 #include <algorithm>
 #include <functional>
 
 namespace pd::detail {
 
+/// Bullet numbers rigid bodies as they are made, in a private member that no function returns. Access is not checked
+/// where a template is instantiated explicitly, which gives this function its body.
+int number_of(const btRigidBody& body);
+
+template <int btRigidBody::*kNumber>
+struct NumberOfBody {
+  friend int number_of(const btRigidBody& body) { return body.*kNumber; }
+};
+template struct NumberOfBody<&btRigidBody::m_debugBodyId>;
+
 WorldObjects::Noted WorldObjects::noted(const btCollisionObject& object) {
   const btBroadphaseProxy* const proxy = object.getBroadphaseHandle();
-  return {&object, object.getCollisionShape(), proxy != nullptr ? proxy->getUid() : -1};
+  const btRigidBody* const body = btRigidBody::upcast(&object);
+  return {&object, object.getCollisionShape(), proxy != nullptr ? proxy->getUid() : -1,
+          body != nullptr ? number_of(*body) : -1};
 }
 
 void WorldObjects::note(const btCollisionWorld& world) {
@@ -22,7 +36,7 @@ bool WorldObjects::same(const btCollisionWorld& world, Shapes shapes) const {
   for (int i = 0; i < present.size(); ++i) {
     const Noted& before = objects_[static_cast<std::size_t>(i)];
     const Noted now = noted(*present[i]);
-    if (now.object != before.object || now.number != before.number) return false;
+    if (!now.is(before)) return false;
     if (shapes == Shapes::compared && now.shape != before.shape) return false;
   }
   return true;
@@ -39,7 +53,7 @@ std::vector<const btCollisionObject*> WorldObjects::renew(const btCollisionWorld
   auto old = before.begin();
   for (const Noted& object : now) {
     while (old != before.end() && by_address(*old, object)) ++old;
-    if (old != before.end() && old->object == object.object && old->number == object.number) {
+    if (old != before.end() && old->is(object)) {
       kept.push_back(object.object);
     }
   }

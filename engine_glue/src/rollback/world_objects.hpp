@@ -9,8 +9,8 @@
 
 namespace pd::detail {
 
-/// An object is known by its address and by the number that the broadphase gave it when it was added: a new object may
-/// lie where one was deleted.
+/// An object is known by its address, by the number that the broadphase gave it when it was added and, if it is a rigid
+/// body, by Bullet's own number: a new object may lie where one was deleted, and btAxisSweep3 gives its numbers again.
 class WorldObjects {
  public:
   /// True if an object that has another shape now counts as changed.
@@ -26,7 +26,12 @@ class WorldObjects {
   struct Noted {
     const btCollisionObject* object;
     const btCollisionShape* shape;
-    int number;  ///< the broadphase's
+    int number;       ///< the broadphase's
+    int body_number;  ///< Bullet's for a rigid body, else -1
+
+    [[nodiscard]] bool is(const Noted& other) const {
+      return object == other.object && number == other.number && body_number == other.body_number;
+    }
   };
   [[nodiscard]] static Noted noted(const btCollisionObject& object);
 
