@@ -47,7 +47,10 @@ function(pd_unity_by_folder target)
     cmake_path(GET folder PARENT_PATH folder)
     cmake_path(RELATIVE_PATH folder BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
     string(MAKE_C_IDENTIFIER "${folder}" group)
-    set_source_files_properties(${source} PROPERTIES UNITY_GROUP "${group}")
+    get_source_file_property(together ${source} UNITY_GROUP)
+    if(NOT together)
+      set_source_files_properties(${source} PROPERTIES UNITY_GROUP "${group}")
+    endif()
   endforeach()
 endfunction()
 
@@ -68,6 +71,21 @@ function(pd_unity_whole target)
   else()
     pd_precompile_headers(${target} ${ARGN})
   endif()
+endfunction()
+
+# pd_unity_together(<target> <folder>...): before one of the two above, the sources in these folders, named from the target's own, are
+# compiled as one, for folders whose sources use the same templates. So a name in an anonymous namespace is theirs together.
+function(pd_unity_together target)
+  get_target_property(sources ${target} SOURCES)
+  string(MAKE_C_IDENTIFIER "${ARGN}" group)
+  foreach(source ${sources})
+    cmake_path(ABSOLUTE_PATH source OUTPUT_VARIABLE folder)
+    cmake_path(GET folder PARENT_PATH folder)
+    cmake_path(RELATIVE_PATH folder BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+    if(folder IN_LIST ARGN)
+      set_source_files_properties(${source} PROPERTIES UNITY_GROUP "${group}")
+    endif()
+  endforeach()
 endfunction()
 
 # pd_optimise_little(<target> <level>): in Release, for code around the loops that are in pd_core: -O1 takes two thirds of the time to
