@@ -3,6 +3,7 @@
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "pair/query_meter.hpp"
 #include "pair/solver_core.hpp"
@@ -41,10 +42,11 @@ bool box_contacts(const btConvexShape& a, const btTransform& transform_a, const 
   if (!in_range(transform_a) || !in_range(transform_b)) return false;
   QueryMeter meter(held);
   const BoxInRows box_a = in_rows(a, transform_a), box_b = in_rows(b, transform_b);
-  const auto radius = [](const BoxInRows& box) {
-    return Vec3(box.half_extents[0], box.half_extents[1], box.half_extents[2]).norm();
+  const auto squared_radius = [](const BoxInRows& box) {
+    return Vec3(box.half_extents[0], box.half_extents[1], box.half_extents[2]).squaredNorm();
   };
-  const double tolerance = contact_tolerance(box_a.centre, box_b.centre, std::min(radius(box_a), radius(box_b)));
+  const double radius = std::sqrt(std::min(squared_radius(box_a), squared_radius(box_b)));
+  const double tolerance = contact_tolerance(box_a.centre, box_b.centre, radius);
   const BoxContact found = box_contact(box_a, box_b, tolerance, breaking_threshold, BoxWitness::left_out);
   if (!found.answered) return false;
   held.counters.calls.add();

@@ -9,7 +9,6 @@
 #include "pair/lasting_points.hpp"
 #include "pd/bullet/scalar.hpp"
 #include "shapes/body_motion.hpp"
-#include "shapes/lane_vectors.hpp"
 
 namespace pd::detail {
 
@@ -104,15 +103,10 @@ void forget_parted(btPersistentManifold& manifold) {
 /// The points on A, in its frame.
 std::array<btVector3, 4> local_on_a(const btTransform& pose_a, const FreshPoints& fresh) {
   std::array<btVector3, 4> local;
-  if (fresh.count == 0) return local;
-  const auto point = [&](int k) -> const FreshPoint& { return fresh.points[k < fresh.count ? k : 0]; };
-  const FourVectors on_b =
-      gather({&point(0).point_on_b, &point(1).point_on_b, &point(2).point_on_b, &point(3).point_on_b});
-  const FourVectors normal = gather({&point(0).normal, &point(1).normal, &point(2).normal, &point(3).normal});
-  const Lanes distance{point(0).distance, point(1).distance, point(2).distance, point(3).distance};
-  Lanes out[4];
-  spread(apply_inverse(pose_a, on_b + scaled(normal, distance)), out);
-  for (int k = 0; k < 4; ++k) __builtin_memcpy(local[k].m_floats, &out[k], sizeof(Lanes));
+  for (int k = 0; k < fresh.count; ++k) {
+    const FreshPoint& point = fresh.points[k];
+    local[k] = pose_a.invXform(point.point_on_b + point.normal * point.distance);
+  }
   return local;
 }
 

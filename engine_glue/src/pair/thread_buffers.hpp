@@ -44,6 +44,7 @@ struct WorkingMemory {
 };
 
 struct ThreadBuffers {
+  std::size_t place = 0;  ///< in the pool
   Scratch scratch;
   ManifoldScratch manifold;
   PairAnswer answer;  ///< of `ContactAlgorithm`
@@ -64,8 +65,8 @@ inline void count_covered(int contacts, ThreadBuffers& buffers) {
   if (contacts > 0) buffers.counters.covered.add(contacts);
 }
 
-/// A pool of buffers: as many as there were threads inside a call at once. Taking and giving back is one exchange of a
-/// pointer each as long as no more than kSlots threads are inside calls.
+/// A pool of buffers: as many as there were threads inside a call at once. Taking is one exchange of a pointer, and
+/// giving back is a store, as long as no more than kSlots threads are inside calls.
 class ThreadBufferPool {
  public:
   /// Gives the buffers back at the end of its scope.
@@ -98,6 +99,7 @@ class ThreadBufferPool {
       return {*this, buffers};
     }
     all_.push_back(std::make_unique<ThreadBuffers>());
+    all_.back()->place = all_.size() - 1;
     return {*this, all_.back().get()};
   }
 
@@ -124,11 +126,10 @@ class ThreadBufferPool {
   static constexpr std::size_t kSlots = 16;
 
   void give_back(ThreadBuffers* buffers) {
-    for (std::atomic<ThreadBuffers*>& slot : idle_) {
-      ThreadBuffers* empty = nullptr;
-      if (slot.compare_exchange_strong(empty, buffers, std::memory_order_release, std::memory_order_relaxed)) {
-        return;
-      }
+    // Each slot has one owner, so that nobody else writes to it while its buffers are lent.
+    if (buffers->place < kSlots) {
+      idle_[buffers->place].store(buffers, std::memory_order_release);
+      return;
     }
     const std::lock_guard lock(mutex_);
     overflow_.push_back(buffers);
