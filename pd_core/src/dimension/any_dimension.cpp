@@ -26,17 +26,19 @@ auto with_dimension(Eigen::Index dimension, const Function& f) {
 AnyVector in_frame(const AnyMatrix& linear, const AnyVector& centre, const double* point) {
   AnyVector r(centre.size());
   with_dimension(centre.size(), [&](auto d) {
-    using Fixed = Eigen::Map<const Vector<d>>;
-    Eigen::Map<Vector<d>>(r.data()) =
-        Eigen::Map<const Matrix<d>>(linear.data()) * (Fixed(point) - Fixed(centre.data()));
+    double from_centre[d];
+    for (int k = 0; k < d; ++k) from_centre[k] = point[k] - centre[k];
+    Eigen::Map<Vector<d>>(r.data()) = image<d>(linear.data(), from_centre);
   });
   return r;
 }
 
 double quadratic(const AnyMatrix& m, const AnyVector& v) {
-  return with_dimension(v.size(), [&](auto d) -> double {
-    const Eigen::Map<const Vector<d>> fixed(v.data());
-    return fixed.dot(Eigen::Map<const Matrix<d>>(m.data()) * fixed);
+  return with_dimension(v.size(), [&](auto d) {
+    const Vector<d> along = image<d>(m.data(), v.data());
+    double sum = 0;
+    for (int k = 0; k < d; ++k) sum += along[k] * v[k];
+    return sum;
   });
 }
 

@@ -3,6 +3,7 @@
 /// see: numbers are copied here and nowhere else.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
@@ -33,6 +34,15 @@ inline void add_scaled(double* to, double scale, const double* from, Eigen::Inde
   for (Eigen::Index k = 0; k < size; ++k) to[k] += scale * from[k];
 }
 
+/// matrix * x of D x D and D numbers.
+template <int D>
+Vector<D> image(const double* matrix, const double* x) {
+  return Eigen::Map<const Matrix<D>>(matrix) * Eigen::Map<const Vector<D>>(x);
+}
+/// Makes m + scale v v^T of m; one family of expressions less than Eigen's outer product.
+inline void add_outer(AnyMatrix& m, double scale, const AnyVector& v) {
+  for (Eigen::Index k = 0; k < v.size(); ++k) add_scaled(&m(0, k), scale * v[k], v.data(), v.size());
+}
 /// linear * (point - centre), the step of every pass over points: in loops of fixed length, like those of one D.
 AnyVector in_frame(const AnyMatrix& linear, const AnyVector& centre, const double* point);
 
@@ -140,11 +150,15 @@ AnyBody any(const Body<D>& body) {
 /// Requires D numbers.
 template <int D>
 Vector<D> fixed(const AnyVector& v) {
-  return Vector<D>(v.data());
+  Vector<D> r;
+  std::copy_n(v.data(), D, r.data());
+  return r;
 }
 template <int D>
 Matrix<D> fixed(const AnyMatrix& m) {
-  return Matrix<D>(m.data());
+  Matrix<D> r;
+  std::copy_n(m.data(), D * D, r.data());
+  return r;
 }
 template <int D>
 Sandwich<D> fixed(const AnySandwich& sandwich) {

@@ -91,7 +91,6 @@ bool RadialHull::complete(const Facet& facet, double* numbers) const {
 /// The innermost loop of kernels, therefore one for each dimension.
 template <int D>
 std::int32_t RadialHull::walk(const double* point, std::int32_t start, std::int64_t& visited) const {
-  const Eigen::Map<const Vector<D>> p(point);
   std::int32_t f = start;
   while (facets_[f].successor >= 0) f = facets_[f].successor;
   std::int32_t previous = -1;
@@ -99,7 +98,7 @@ std::int32_t RadialHull::walk(const double* point, std::int32_t start, std::int6
   // Straight walks take about the number of facets to the power 1 / (D - 1); a longer one goes round in circles.
   for (std::int64_t steps = 0; steps < 200 + alive_; ++steps) {
     ++visited;
-    const Vector<D> lambda = Eigen::Map<const Matrix<D>>(numbers(f)) * p;
+    const Vector<D> lambda = image<D>(numbers(f), point);
     // The place of the least, by conditional moves: which it is cannot be foretold.
     double least = lambda[0];
     std::size_t k = 0;

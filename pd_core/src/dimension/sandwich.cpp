@@ -31,7 +31,7 @@ FatteningMap<kAnyDimension> fatten(const std::vector<AnyBox>& boxes) {
   }
   // Whitened first: needles would cost the weights their digits.
   AnyMatrix moments = AnyMatrix::Zero(d, d);
-  for (const AnyVector& g : generators) moments += g * g.transpose();
+  for (const AnyVector& g : generators) detail::add_outer(moments, 1, g);
   const pd::detail::SmallSingularValues singular(moments.data(), d);
   AnyMatrix whitening = Eigen::Map<const AnyMatrix>(singular.right(), d, d).transpose();
   for (int k = 0; k < d; ++k) whitening.row(k) /= std::sqrt(std::max(singular.value(k), 1e-30 * singular.value(0)));
@@ -43,14 +43,14 @@ FatteningMap<kAnyDimension> fatten(const std::vector<AnyBox>& boxes) {
   for (int step = 0; step < kLewisSteps; ++step) {
     metric.setZero();
     for (std::size_t i = 0; i < generators.size(); ++i) {
-      if (weights[i] > 0) metric += generators[i] * generators[i].transpose() / weights[i];
+      if (weights[i] > 0) detail::add_outer(metric, 1 / weights[i], generators[i]);
     }
     const AnyMatrix inverse = inverse_of<kAnyDimension>(metric);
     lower = 1;
     total = 0;
     std::vector<double> next;
     for (std::size_t i = 0; i < generators.size(); ++i) {
-      next.push_back(std::sqrt(generators[i].dot(inverse * generators[i])));
+      next.push_back(std::sqrt(detail::quadratic(inverse, generators[i])));
       // |v|_M <= h_Z(v) max (next / weight);  h_Z(v) <= sqrt(sum of weights) |v|_M.
       if (weights[i] > 0) lower = std::max(lower, next[i] / weights[i]);
       total += weights[i];

@@ -1,6 +1,7 @@
 #include "dimension/weighted_ellipsoid.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "numeric/small_decompositions.hpp"
@@ -18,15 +19,14 @@ constexpr double kFarSlack = 2;
 /// The ascent in the frame: weights u on lifted points q = (y, 1), w_i = q_i^T Lambda^-1 q_i, Lambda = sum u q q^T.
 class Ascent {
   static constexpr int kMost = kMaxDimension + 1;
-  using Lifted = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::DontAlign, kMost, 1>;
-  using Moments = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign, kMost, kMost>;
+  using Lifted = std::array<double, kMost>;
 
  public:
   explicit Ascent(const std::vector<AnyVector>& y)
-      : size_(y[0].size() + 1), weights_(y.size(), 1 / static_cast<double>(y.size())), inverse_(size_, size_) {
+      : size_(y[0].size() + 1), weights_(y.size(), 1 / static_cast<double>(y.size())) {
     for (const AnyVector& p : y) {
-      Lifted q = Lifted::Ones(size_);
-      q.head(p.size()) = p;
+      Lifted q{};
+      q[std::copy_n(p.data(), p.size(), q.begin()) - q.begin()] = 1;
       lifted_.push_back(q);
     }
   }
@@ -67,22 +67,33 @@ class Ascent {
   static constexpr std::int64_t kRefresh = 64;
 
   void refresh() {
-    Moments moments = Moments::Zero(size_, size_);
-    for (std::size_t i = 0; i < lifted_.size(); ++i) moments += weights_[i] * lifted_[i] * lifted_[i].transpose();
+    std::array<double, kMost * kMost> moments{};
+    for (std::size_t i = 0; i < lifted_.size(); ++i) {
+      const Lifted& q = lifted_[i];
+      for (Eigen::Index k = 0; k < size_; ++k) add_scaled(&moments[size_ * k], weights_[i] * q[k], q.data(), size_);
+    }
     pd::detail::SmallElimination(moments.data(), static_cast<int>(size_)).inverse(inverse_.data());
     w_.resize(lifted_.size());
-    for (std::size_t i = 0; i < lifted_.size(); ++i) w_[i] = lifted_[i].dot(inverse_ * lifted_[i]);
+    for (std::size_t i = 0; i < lifted_.size(); ++i) w_[i] = dot(lifted_[i].data(), image_of(lifted_[i]).data(), size_);
+  }
+
+  /// Lambda^-1 q
+  [[nodiscard]] Lifted image_of(const Lifted& q) const {
+    Lifted r{};
+    for (Eigen::Index k = 0; k < size_; ++k) add_scaled(r.data(), q[k], &inverse_[size_ * k], size_);
+    return r;
   }
 
   /// u <- (1 - beta) u + beta e_j; Lambda^-1 and w by the rank-one update.
   void step(std::size_t j, double beta) {
     for (double& u : weights_) u *= 1 - beta;
     weights_[j] = std::max(0.0, weights_[j] + beta);
-    const Lifted z = inverse_ * lifted_[j];
+    const Lifted z = image_of(lifted_[j]);
     const double factor = beta / (1 - beta + beta * w_[j]);
-    inverse_ = (inverse_ - factor * z * z.transpose()) / (1 - beta);
+    for (Eigen::Index k = 0; k < size_; ++k) add_scaled(&inverse_[size_ * k], -factor * z[k], z.data(), size_);
+    for (double& entry : inverse_) entry /= 1 - beta;
     for (std::size_t i = 0; i < lifted_.size(); ++i) {
-      const double along = z.dot(lifted_[i]);
+      const double along = dot(z.data(), lifted_[i].data(), size_);
       w_[i] = (w_[i] - factor * along * along) / (1 - beta);
     }
   }
@@ -91,7 +102,7 @@ class Ascent {
   Eigen::Index size_;
   std::vector<double> weights_;
   std::vector<double> w_;
-  Moments inverse_;
+  std::array<double, kMost * kMost> inverse_{};  ///< of Lambda, column by column
 };
 
 }  // namespace
@@ -160,7 +171,7 @@ bool core_ellipsoid(const Points& points, double eta, AnySandwich& sandwich, std
   AnyMatrix covariance = AnyMatrix::Zero(d, d);
   for (std::size_t i = 0; i < y.size(); ++i) {
     const AnyVector x = y[i] - mean;
-    covariance += ascent.weights()[i] * x * x.transpose();
+    add_outer(covariance, ascent.weights()[i], x);
   }
   const pd::detail::SmallCholesky root(covariance.data(), d);
   if (!root.positive()) return false;

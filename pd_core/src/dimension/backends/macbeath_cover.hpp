@@ -28,16 +28,13 @@ struct DirectionBox {
   [[nodiscard]] int dimension() const { return static_cast<int>(low.size()); }
   [[nodiscard]] int corners() const { return 1 << (dimension() - 1); }
   [[nodiscard]] AnyVector corner(int k) const {
-    AnyVector r = low;
-    for (int i = 0, bit = 0; i < dimension(); ++i) {
-      if (i == axis) continue;
-      if ((k >> bit++) & 1) r[i] += side;
-    }
+    AnyVector r(low.size());
+    for (int i = 0, bit = 0; i < dimension(); ++i) r[i] = low[i] + (i != axis && ((k >> bit++) & 1) != 0 ? side : 0);
     return r;
   }
   [[nodiscard]] AnyVector middle() const {
-    AnyVector r = low;
-    for (int i = 0; i < dimension(); ++i) r[i] += i == axis ? 0 : 0.5 * side;
+    AnyVector r(low.size());
+    for (int i = 0; i < dimension(); ++i) r[i] = low[i] + (i == axis ? 0 : 0.5 * side);
     return r;
   }
   [[nodiscard]] DirectionBox child(int k) const {
@@ -68,7 +65,8 @@ inline bool covers(const ShadowCone& cone, const DirectionBox& box) {
 /// does. The cone is {v : g(v) <= 0}, g(v) = sqrt(v' square v) - <axis, v>, and g convex: it is descended coordinate by
 /// coordinate from the box's middle until it is negative, or until its tangent plane is positive all over the box.
 inline bool meets(const ShadowCone& cone, const DirectionBox& box) {
-  const AnyMatrix square = cone.axis * cone.axis.transpose() - cone.form;
+  AnyMatrix square = -cone.form;
+  add_outer(square, 1, cone.axis);
   AnyVector v = box.middle();
   AnyVector image = square * v;
   constexpr int kSweeps = 8;

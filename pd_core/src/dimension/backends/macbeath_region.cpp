@@ -21,7 +21,8 @@ ShadowCone MacbeathRegion::shadow(double c) const {
   r.axis = ellipsoid * center;
   const double beyond = center.dot(r.axis) - c * c;
   r.everything = beyond <= 0;
-  r.form = r.axis * r.axis.transpose() - beyond * ellipsoid;
+  r.form = -beyond * ellipsoid;
+  add_outer(r.form, 1, r.axis);
   return r;
 }
 
@@ -64,7 +65,7 @@ AnyMatrix PolarBody::ellipsoid_in(const Slab& slab, std::span<const std::int32_t
         far = a;
       }
     }
-    moment += far * far.transpose() / d;
+    add_outer(moment, 1.0 / d, far);
     AnyVector rest = far - basis * (basis.transpose() * far);
     rest -= basis * (basis.transpose() * rest);
     basis.col(k) = rest / rest.norm();
@@ -84,7 +85,8 @@ AnyMatrix PolarBody::ellipsoid_in(const Slab& slab, std::span<const std::int32_t
     }
     if (most <= kRoundness * d) break;
     const double share = (most / d - 1) / (most - 1);
-    moment = (1 - share) * moment + share * slabs[far] * slabs[far].transpose();
+    moment *= 1 - share;
+    add_outer(moment, share, slabs[far]);
     inverse = inverse_of<kAnyDimension>(moment);
     // What carries no weight at the optimum is left out (Harman and Pronzato 2007).
     const double gap = most / d - 1;
