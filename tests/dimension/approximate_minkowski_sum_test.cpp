@@ -139,7 +139,7 @@ void check_growth_by_budget(std::int64_t most_work) {
   const ComposedBody<D> first = prepare<D>(source.points(Family::sphere, 200), 1e-4, Backend::kernel);
   const ComposedBody<D> second = prepare<D>(source.points(Family::sphere, 200), 1e-4, Backend::kernel);
   const ComposedBody<D> sum = *ComposedBody<D>::sum_of({first, second});
-  detail::GrowingSum<D> grown(sum);
+  detail::GrowingSum grown(sum.node());
   ASSERT_EQ(grown.grow(1 + 1e-3, most_work), detail::Growth::spent) << "D = " << D;
   EXPECT_GT(grown.reached(), 1 + 1e-3);
   EXPECT_LT(grown.reached(), 2) << "D = " << D;
@@ -148,7 +148,7 @@ void check_growth_by_budget(std::int64_t most_work) {
     QueryCounters counters;
     const Vector<D> p = grown.frame().apply(sum.support(grown.frame().pull_back(v), counters).point);
     double inside = 0;
-    for (const Vector<D>& q : grown.hull().vertices()) inside = std::max(inside, q.dot(v));
+    for (const Vector<D> q : grown.hull().vertices()) inside = std::max(inside, q.dot(v));
     EXPECT_LE(p.dot(v), grown.reached() * inside) << "D = " << D;
   }
 }

@@ -10,6 +10,10 @@ namespace pd::dimension {
 
 namespace {
 
+using detail::AnyBody;
+using detail::KernelBuilder;
+using AnyApproximation = ApproximateBody<kAnyDimension>;
+
 /// Moves what lies on the wrong side by rounding alone; far below the least epsilon.
 constexpr double kBlowUpRoom = 1e-9;
 
@@ -17,13 +21,12 @@ constexpr double kBlowUpRoom = 1e-9;
 double blow_up(Side side, double limit) { return side == Side::outer ? limit : 1 - kBlowUpRoom; }
 
 /// conv(kernel) is in K is in limit conv(kernel), about the frame's origin.
-template <int D>
-ApproximateBody<D> from_points(const Body<D>& body, double epsilon, Representation representation, Side side) {
-  const Sandwich<D>& sandwich = body.sandwich();
-  detail::KernelBuilder<D> builder(sandwich.fattening(), epsilon);
-  builder.add(body.points(), 0);
+AnyApproximation from_points(const AnyBody& body, double epsilon, Representation representation, Side side) {
+  const detail::AnySandwich& sandwich = body.sandwich;
+  KernelBuilder builder(sandwich.fattening(), epsilon);
+  builder.add(body.points, 0);
   const double factor = blow_up(side, builder.limit());
-  ApproximateBody<D> r;
+  AnyApproximation r;
   r.representation = representation;
   if (representation == Representation::points) {
     for (const auto& p : builder.chosen()) {
@@ -32,11 +35,11 @@ ApproximateBody<D> from_points(const Body<D>& body, double epsilon, Representati
     return r;
   }
   const auto& hull = builder.hull();
-  const AffineMap<D>& to_unit = builder.to_unit();
+  const detail::AnyMap& to_unit = builder.to_unit();
   const std::vector<std::int32_t> same = detail::merge_equal_planes(hull);
   for (std::int32_t f = 0; f < static_cast<std::int32_t>(same.size()); ++f) {
     if (same[f] != f) continue;
-    const Vector<D> normal = to_unit.pull_back(hull.facets()[f].normal);
+    const detail::AnyVector normal = to_unit.pull_back(hull.normal(f));
     const double length = normal.norm();
     r.halfspaces.push_back({normal / length, (factor + normal.dot(sandwich.centre)) / length});
   }
@@ -44,18 +47,17 @@ ApproximateBody<D> from_points(const Body<D>& body, double epsilon, Representati
 }
 
 /// With H the hull of the polar's kernel: K is in H^o is in limit K, about the frame's origin.
-template <int D>
-ApproximateBody<D> from_halfspaces(const Body<D>& body, double epsilon, Representation representation, Side side) {
-  const Sandwich<D>& sandwich = body.sandwich();
-  std::vector<Vector<D>> polar = detail::polar_points<D>(body.halfspaces(), sandwich);
-  for (Vector<D>& q : polar) q *= sandwich.ratio;
-  detail::KernelBuilder<D> builder({}, epsilon);
+AnyApproximation from_halfspaces(const AnyBody& body, double epsilon, Representation representation, Side side) {
+  const detail::AnySandwich& sandwich = body.sandwich;
+  std::vector<detail::AnyVector> polar = detail::polar_points(body.halfspaces, sandwich);
+  for (detail::AnyVector& q : polar) q *= sandwich.ratio;
+  KernelBuilder builder(detail::identity_map(body.dimension()), epsilon);
   builder.add(polar, 0);
-  ApproximateBody<D> r;
+  AnyApproximation r;
   r.representation = representation;
   if (representation == Representation::halfspaces) {
     for (const auto& p : builder.chosen()) {
-      Halfspace<D> h = body.halfspaces()[static_cast<std::size_t>(p.index)];
+      detail::AnyHalfspace h = body.halfspaces[static_cast<std::size_t>(p.index)];
       const double apex = h.normal.dot(sandwich.centre);
       if (side == Side::inner) h.offset = apex + (h.offset - apex) / builder.limit();
       r.halfspaces.push_back(h);
@@ -67,7 +69,7 @@ ApproximateBody<D> from_halfspaces(const Body<D>& body, double epsilon, Represen
   const std::vector<std::int32_t> same = detail::merge_equal_planes(hull);
   for (std::int32_t f = 0; f < static_cast<std::int32_t>(same.size()); ++f) {
     if (same[f] != f) continue;
-    const Vector<D> unit = factor * sandwich.ratio * hull.facets()[f].normal;
+    const detail::AnyVector unit = factor * sandwich.ratio * hull.normal(f);
     r.points.push_back(sandwich.centre + sandwich.axes * unit);
   }
   return r;
@@ -84,8 +86,11 @@ Expected<ApproximateBody<D>> approximate_body(const Body<D>& body, double epsilo
   // Outer: limit - 1 = epsilon / 2, less a hair for rounding.
   const double half = epsilon / 2 * (1 - 1e-4);
   const double share = side == Side::outer ? half / (1 + half) : epsilon * (1 - 1e-4);
-  return body.representation() == Representation::points ? from_points<D>(body, share, representation, side)
-                                                         : from_halfspaces<D>(body, share, representation, side);
+  const AnyBody any = detail::any<D>(body);
+  const AnyApproximation r = any.representation == Representation::points
+                                 ? from_points(any, share, representation, side)
+                                 : from_halfspaces(any, share, representation, side);
+  return ApproximateBody<D>{r.representation, detail::fixed<D>(r.points), detail::fixed<D>(r.halfspaces)};
 }
 
 template Expected<ApproximateBody<2>> approximate_body<2>(const Body<2>&, double, Representation, Side);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "dimension/composed/composed_node.hpp"
 #include "dimension/origin_frame.hpp"
@@ -12,43 +13,45 @@ namespace pd::dimension {
 
 namespace {
 
+using detail::AnyVector;
+using detail::Composed;
 using detail::EllipsoidBounds;
 using detail::Point;
 using detail::SupportBody;
 
 /// The differences x_1 - x_i of points of k bodies, and behind them the bodies' own residuals; for one body x_1 -
 /// point. O lies here exactly when the bodies have a common point (the body holds the point).
-template <int D>
 class Meeting final : public SupportBody {
  public:
-  Meeting(std::span<const ComposedBody<D>> bodies, const Vector<D>& point) : bodies_(bodies), point_(point) {
-    differences_ = D * std::max<Eigen::Index>(1, static_cast<Eigen::Index>(bodies.size()) - 1);
+  Meeting(std::span<const Composed> bodies, const AnyVector& point)
+      : bodies_(bodies), point_(point), dimension_(bodies[0]->dimension) {
+    differences_ = dimension_ * std::max<Eigen::Index>(1, static_cast<Eigen::Index>(bodies.size()) - 1);
     size_ = differences_;
-    for (const ComposedBody<D>& body : bodies) {
-      size_ += body.equations();
-      error_ = std::max(error_, body.epsilon());
-      consistent_ = consistent_ && body.node().consistent;
-      magnitude_ += body.node().magnitude;
+    for (const Composed& body : bodies) {
+      size_ += body->equations;
+      error_ = std::max(error_, body->epsilon);
+      consistent_ = consistent_ && body->consistent;
+      magnitude_ += body->magnitude;
     }
     magnitude_ += point.cwiseAbs().maxCoeff();
   }
 
   [[nodiscard]] Point support(const Point& direction) const override {
     Point r = Point::Zero(size_);
-    Vector<D> first_direction = Vector<D>::Zero();
-    for (Eigen::Index i = 0; i < differences_; i += D) first_direction += direction.template segment<D>(i);
+    AnyVector first_direction = AnyVector::Zero(dimension_);
+    for (Eigen::Index i = 0; i < differences_; i += dimension_) first_direction += direction.segment(i, dimension_);
     const double* u = direction.data() + differences_;
     double* residuals = r.data() + differences_;
-    Vector<D> first;
-    bodies_[0].node().support(first_direction, u, first, residuals, counters_);
-    if (bodies_.size() == 1) r.template head<D>() = first - point_;
+    AnyVector first;
+    bodies_[0]->support(first_direction, u, first, residuals, counters_);
+    if (bodies_.size() == 1) r.head(dimension_) = first - point_;
     for (std::size_t i = 1; i < bodies_.size(); ++i) {
-      u += bodies_[i - 1].equations();
-      residuals += bodies_[i - 1].equations();
-      const Eigen::Index slot = D * static_cast<Eigen::Index>(i - 1);
-      Vector<D> other;
-      bodies_[i].node().support(-direction.template segment<D>(slot), u, other, residuals, counters_);
-      r.template segment<D>(slot) = first - other;
+      u += bodies_[i - 1]->equations;
+      residuals += bodies_[i - 1]->equations;
+      const Eigen::Index slot = dimension_ * static_cast<Eigen::Index>(i - 1);
+      AnyVector other;
+      bodies_[i]->support(-direction.segment(slot, dimension_), u, other, residuals, counters_);
+      r.segment(slot, dimension_) = first - other;
     }
     return r;
   }
@@ -58,8 +61,8 @@ class Meeting final : public SupportBody {
   [[nodiscard]] double magnitude() const override { return magnitude_; }
 
   [[nodiscard]] EllipsoidBounds bounds() const override {
-    const auto leaf = [](const ComposedBody<D>& body) { return body.node().kind == detail::ComposedKind::leaf; };
-    return size_ == D && std::all_of(bodies_.begin(), bodies_.end(), leaf) ? leaf_bounds() : composed_bounds();
+    const auto leaf = [](const Composed& body) { return body->kind == detail::ComposedKind::leaf; };
+    return size_ == dimension_ && std::all_of(bodies_.begin(), bodies_.end(), leaf) ? leaf_bounds() : composed_bounds();
   }
 
   [[nodiscard]] Eigen::Index size() const { return size_; }
@@ -68,15 +71,15 @@ class Meeting final : public SupportBody {
  private:
   /// Of one or two images of preprocessed bodies, from what their nodes keep.
   [[nodiscard]] EllipsoidBounds leaf_bounds() const {
-    const detail::ComposedNode<D>& first = bodies_[0].node();
+    const detail::ComposedNode& first = *bodies_[0];
     EllipsoidBounds r = {first.centre - point_, first.inner, first.inner};
-    double ratio = first.body->sandwich().ratio;
+    double ratio = first.body.sandwich.ratio;
     if (bodies_.size() == 2) {
-      const detail::ComposedNode<D>& second = bodies_[1].node();
+      const detail::ComposedNode& second = *bodies_[1];
       r.center = first.centre - second.centre;
       detail::add_to_root(r.inner, 1, second.inner);
       // Sums of roots are at most sqrt(2) times the root of the sum of squares.
-      ratio = std::sqrt(2.0) * std::max(ratio, second.body->sandwich().ratio);
+      ratio = std::sqrt(2.0) * std::max(ratio, second.body.sandwich.ratio);
     }
     r.outer = ratio * r.inner;
     return r;
@@ -87,24 +90,25 @@ class Meeting final : public SupportBody {
     EllipsoidBounds r = EllipsoidBounds::zero(size_);
     Eigen::Index residual = differences_;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      detail::LiftedMatrix entry = detail::LiftedMatrix::Zero(size_, D);
-      for (Eigen::Index slot = 0; slot < differences_; slot += D) {
-        if (i == 0 || slot == D * static_cast<Eigen::Index>(i - 1)) {
-          for (int c = 0; c < D; ++c) entry(slot + c, c) = i == 0 ? 1.0 : -1.0;
+      detail::LiftedMatrix entry = detail::LiftedMatrix::Zero(size_, dimension_);
+      for (Eigen::Index slot = 0; slot < differences_; slot += dimension_) {
+        if (i == 0 || slot == dimension_ * static_cast<Eigen::Index>(i - 1)) {
+          for (int c = 0; c < dimension_; ++c) entry(slot + c, c) = i == 0 ? 1.0 : -1.0;
         }
       }
-      const EllipsoidBounds part = bodies_[i].node().bounds(entry, residual);
-      residual += bodies_[i].equations();
+      const EllipsoidBounds part = bodies_[i]->bounds(entry, residual);
+      residual += bodies_[i]->equations;
       r.center += part.center;
       detail::add_to_root(r.inner, 1, part.inner);
       detail::add_to_root(r.outer, std::sqrt(count), part.outer);
     }
-    if (bodies_.size() == 1) r.center.template head<D>() -= point_;
+    if (bodies_.size() == 1) r.center.head(dimension_) -= point_;
     return r;
   }
 
-  std::span<const ComposedBody<D>> bodies_;
-  Vector<D> point_;
+  std::span<const Composed> bodies_;
+  AnyVector point_;
+  Eigen::Index dimension_;
   Eigen::Index differences_ = 0;
   Eigen::Index size_ = 0;
   double error_ = 0;
@@ -113,8 +117,7 @@ class Meeting final : public SupportBody {
   mutable QueryCounters counters_;
 };
 
-template <int D>
-Expected<IntersectionAnswer> locate(const Meeting<D>& meeting, double epsilon, IntersectionSearch search) {
+Expected<IntersectionAnswer> locate(const Meeting& meeting, double epsilon, IntersectionSearch search) {
   const bool ternary = search == IntersectionSearch::nested_ternary;
   if (ternary && !meeting.consistent()) {
     const double fatness = detail::OriginFrame(meeting).inner_radius();
@@ -137,19 +140,18 @@ Expected<IntersectionAnswer> locate(const Meeting<D>& meeting, double epsilon, I
   return IntersectionAnswer{found.contains, found.supports, found.cuts, meeting.counters()};
 }
 
-template <int D>
-Expected<IntersectionAnswer> meet(std::span<const ComposedBody<D>> bodies, const Vector<D>& point, double epsilon,
+Expected<IntersectionAnswer> meet(std::span<const Composed> bodies, const AnyVector& point, double epsilon,
                                   IntersectionSearch search) {
   if (!(epsilon > 0 && epsilon < 1)) return Error{ErrorCode::bad_value, "epsilon must lie in (0, 1)", "epsilon"};
-  for (const ComposedBody<D>& body : bodies) {
-    if (body.epsilon() > epsilon / 4) {
+  for (const Composed& body : bodies) {
+    if (body->epsilon > epsilon / 4) {
       return Error{ErrorCode::bad_value,
-                   "the bodies are preprocessed at epsilon " + std::to_string(body.epsilon()) +
+                   "the bodies are preprocessed at epsilon " + std::to_string(body->epsilon) +
                        "; this query needs a quarter of its own epsilon",
                    "epsilon"};
     }
   }
-  const Meeting<D> lifted(bodies, point);
+  const Meeting lifted(bodies, point);
   if (lifted.size() > detail::kMaxLiftedDimension) {
     return Error{ErrorCode::limit_exceeded,
                  "the bodies take " + std::to_string(lifted.size()) + " coordinates; at most " +
@@ -159,20 +161,27 @@ Expected<IntersectionAnswer> meet(std::span<const ComposedBody<D>> bodies, const
   return locate(lifted, epsilon, search);
 }
 
+template <int D>
+std::vector<Composed> nodes_of(std::span<const ComposedBody<D>> bodies) {
+  std::vector<Composed> nodes;
+  for (const ComposedBody<D>& body : bodies) nodes.push_back(body.node());
+  return nodes;
+}
+
 }  // namespace
 
 template <int D>
 Expected<IntersectionAnswer> approximate_intersection(std::span<const ComposedBody<D>> bodies, double epsilon,
                                                       IntersectionSearch search) {
   if (bodies.size() < 2) return Error{ErrorCode::bad_value, "at least two bodies are needed", ""};
-  return meet<D>(bodies, Vector<D>::Zero(), epsilon, search);
+  return meet(nodes_of<D>(bodies), AnyVector::Zero(D), epsilon, search);
 }
 
 template <int D>
 Expected<IntersectionAnswer> approximate_membership(const ComposedBody<D>& body, const Vector<D>& point, double epsilon,
                                                     IntersectionSearch search) {
   if (!point.allFinite()) return Error{ErrorCode::non_finite, "the point is not finite", "point"};
-  return meet<D>(std::span(&body, 1), point, epsilon, search);
+  return meet(std::span(&body.node(), 1), detail::any<D>(point), epsilon, search);
 }
 
 #define PD_INSTANTIATE(D)                                                                                           \

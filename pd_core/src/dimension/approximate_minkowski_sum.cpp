@@ -14,35 +14,38 @@ namespace pd::dimension {
 
 namespace {
 
+using detail::AnyHalfspace;
+using detail::AnyMap;
+using detail::AnyVector;
+using detail::Composed;
 using detail::GrowingSum;
 using detail::Growth;
 using detail::kRoom;
+using AnySum = ApproximateSum<kAnyDimension>;
 
-template <int D>
-std::vector<Vector<D>> points_of(const GrowingSum<D>& grown, double factor) {
+std::vector<AnyVector> points_of(const GrowingSum& grown, double factor) {
   const auto& hull = grown.hull();
   std::vector<char> used(hull.vertices().size(), 0);
   for (std::size_t f = 0; f < hull.facets().size(); ++f) {
     if (!hull.alive(static_cast<std::int32_t>(f))) continue;
-    for (const std::int32_t v : hull.facets()[f].vertex) used[static_cast<std::size_t>(v)] = 1;
+    for (const std::int32_t v : hull.vertices_of(static_cast<std::int32_t>(f))) used[static_cast<std::size_t>(v)] = 1;
   }
-  const AffineMap<D> back = grown.frame().inverse();
-  std::vector<Vector<D>> r;
+  const AnyMap back = grown.frame().inverse();
+  std::vector<AnyVector> r;
   for (std::size_t v = 0; v < used.size(); ++v) {
     if (used[v] != 0) r.push_back(back.apply(factor * hull.vertices()[v]));
   }
   return r;
 }
 
-template <int D>
-std::vector<Halfspace<D>> halfspaces_of(const GrowingSum<D>& grown, Side side) {
+std::vector<AnyHalfspace> halfspaces_of(const GrowingSum& grown, Side side) {
   const auto& hull = grown.hull();
   const std::vector<std::int32_t> same = detail::merge_equal_planes(hull);
-  std::vector<Halfspace<D>> r;
+  std::vector<AnyHalfspace> r;
   for (std::int32_t f = 0; f < static_cast<std::int32_t>(same.size()); ++f) {
     if (same[static_cast<std::size_t>(f)] != f) continue;
-    const Vector<D>& plane = hull.facets()[static_cast<std::size_t>(f)].normal;
-    const Vector<D> normal = grown.frame().pull_back(plane);
+    const AnyVector plane = hull.normal(f);
+    const AnyVector normal = grown.frame().pull_back(plane);
     const double offset = (side == Side::outer ? grown.upper(f) : 1 - kRoom) - plane.dot(grown.frame().translation);
     const double length = normal.norm();
     r.push_back({normal / length, offset / length});
@@ -50,35 +53,31 @@ std::vector<Halfspace<D>> halfspaces_of(const GrowingSum<D>& grown, Side side) {
   return r;
 }
 
-}  // namespace
-
-template <int D>
-Expected<ApproximateSum<D>> approximate_minkowski_sum(const ComposedBody<D>& sum, double epsilon,
-                                                      Representation representation, Side side) {
+Expected<AnySum> approximation_of(const Composed& sum, double epsilon, Representation representation, Side side) {
   const pd::detail::FloatingPointGuard guard;
   if (!(epsilon >= 1e-6 && epsilon < 1)) {
     return Error{ErrorCode::bad_value, "epsilon must lie in [1e-6, 1)", "epsilon"};
   }
-  if (sum.equations() > 0 && epsilon < 1e-5) {
+  if (sum->equations > 0 && epsilon < 1e-5) {
     return Error{ErrorCode::bad_value, "epsilon must be 1e-5 or more with an intersection inside", "epsilon"};
   }
-  if (sum.equations() > 0) {
+  if (sum->equations > 0) {
     // A fifth of epsilon of the width for the intersections, half of epsilon for the polytope, the rest for their
     // product.
-    const auto flat = detail::without_intersections<D>(sum, side, epsilon / 5, epsilon / 4);
+    const auto flat = detail::without_intersections(sum, side, epsilon / 5, epsilon / 4);
     if (!flat) return flat.error();
-    auto made = approximate_minkowski_sum<D>(*flat, epsilon / 2, representation, side);
+    auto made = approximation_of(*flat, epsilon / 2, representation, side);
     if (!made) return made;
-    ApproximateSum<D> whole = *std::move(made);
+    AnySum whole = *std::move(made);
     // The rest of epsilon went into the intersections.
     whole.epsilon = whole.bracket_reached ? epsilon : whole.epsilon + epsilon / 2;
     return whole;
   }
-  GrowingSum<D> grown(sum);
-  const double needed = detail::allowed_error(sum, grown.ratio(), epsilon / 2);
-  if (sum.epsilon() > needed) {
+  GrowingSum grown(sum);
+  const double needed = detail::allowed_error(*sum, grown.ratio(), epsilon / 2);
+  if (sum->epsilon > needed) {
     return Error{ErrorCode::bad_value,
-                 "the bodies are preprocessed at epsilon " + std::to_string(sum.epsilon()) + "; this query needs " +
+                 "the bodies are preprocessed at epsilon " + std::to_string(sum->epsilon) + "; this query needs " +
                      std::to_string(needed),
                  "epsilon"};
   }
@@ -89,15 +88,15 @@ Expected<ApproximateSum<D>> approximate_minkowski_sum(const ComposedBody<D>& sum
     return Error{ErrorCode::out_of_range, "the bodies are too slender for this epsilon in double precision", "epsilon"};
   }
   const double reached = grown.reached();
-  ApproximateSum<D> r;
+  AnySum r;
   r.body.representation = representation;
   r.bracket_reached = growth == Growth::reached;
   r.epsilon = r.bracket_reached     ? epsilon
               : side == Side::outer ? 2 * (reached - 1) * (1 + 1e-4)
                                     : (1 - 1 / reached) * (1 + 1e-4);
-  std::vector<Vector<D>> points = points_of(
+  std::vector<AnyVector> points = points_of(
       grown, side == Side::outer && representation == Representation::points ? reached * (1 + kRoom) : 1 - kRoom);
-  std::vector<Halfspace<D>> halfspaces = halfspaces_of(grown, side);
+  std::vector<AnyHalfspace> halfspaces = halfspaces_of(grown, side);
   r.vertices = static_cast<std::int64_t>(points.size());
   r.facets = static_cast<std::int64_t>(halfspaces.size());
   if (representation == Representation::points) {
@@ -108,6 +107,22 @@ Expected<ApproximateSum<D>> approximate_minkowski_sum(const ComposedBody<D>& sum
   r.support_calls = grown.supports();
   r.counters = grown.counters();
   return r;
+}
+
+}  // namespace
+
+template <int D>
+Expected<ApproximateSum<D>> approximate_minkowski_sum(const ComposedBody<D>& sum, double epsilon,
+                                                      Representation representation, Side side) {
+  const auto r = approximation_of(sum.node(), epsilon, representation, side);
+  if (!r) return r.error();
+  return ApproximateSum<D>{{representation, detail::fixed<D>(r->body.points), detail::fixed<D>(r->body.halfspaces)},
+                           r->epsilon,
+                           r->bracket_reached,
+                           r->support_calls,
+                           r->vertices,
+                           r->facets,
+                           r->counters};
 }
 
 #define PD_INSTANTIATE(D)                                                                                           \

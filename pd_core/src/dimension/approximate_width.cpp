@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "dimension/backends/width_structure.hpp"
 #include "dimension/radial_hull.hpp"
 #include "dimension/validate.hpp"
 #include "numeric/floating_point_guard.hpp"
@@ -13,6 +14,12 @@
 namespace pd::dimension {
 
 namespace {
+
+using detail::AnyBody;
+using detail::AnyMap;
+using detail::AnySupport;
+using detail::AnyVector;
+using AnyWidth = ApproximateWidth<kAnyDimension>;
 
 /// What rounding may take from the bounds in a frame where the body is about a unit ball.
 constexpr double kWidthRoom = 1e-10;
@@ -23,13 +30,16 @@ constexpr double kStructureShare = 0.9;
 constexpr std::int64_t kMostWork = 1'000'000;
 
 /// The polytope inside K + (-K), in the frame in which K holds the unit ball and so K + (-K) the ball of radius 2.
-template <int D>
 class WidthSearch {
  public:
-  WidthSearch(const Body<D>& body, const DirectionalWidth<D>& structure, double stop)
-      : body_(body), structure_(structure), to_unit_(body.sandwich().fattening()), stop_(stop), hull_(1) {}
+  WidthSearch(const AnyBody& body, const detail::WidthStructure& structure, double stop)
+      : body_(body),
+        structure_(structure),
+        to_unit_(body.sandwich.fattening()),
+        stop_(stop),
+        hull_(body.dimension(), 1) {}
 
-  ApproximateWidth<D> run() {
+  AnyWidth run() {
     push(0, static_cast<std::int32_t>(hull_.facets().size()));
     double least = std::numeric_limits<double>::infinity();
     for (;;) {
@@ -39,17 +49,19 @@ class WidthSearch {
       if (!hull_.alive(nearest.facet)) continue;
       result_.lower = nearest.distance;
       if (least <= (1 + stop_) * nearest.distance) break;
-      const Vector<D> normal = hull_.facets()[nearest.facet].normal;
-      const Vector<D> direction = to_unit_.pull_back(normal);
-      const DirectionalWidthAnswer<D> answer = structure_.width(direction, result_.queries);
-      if (answer.width < least) {
-        least = answer.width;
+      const AnyVector normal = hull_.normal(nearest.facet);
+      const AnyVector direction = to_unit_.pull_back(normal);
+      const AnySupport most = structure_.support(direction, result_.queries);
+      const AnySupport behind = structure_.support(-direction, result_.queries);
+      const double width = (most.value + behind.value) / direction.norm();
+      if (width < least) {
+        least = width;
         result_.direction = direction;
       }
       if (least <= (1 + stop_) * nearest.distance) break;
       result_.bracket_reached = work() < kMostWork;
       if (!result_.bracket_reached) break;
-      const Vector<D> reach = to_unit_.linear * (answer.most.point - answer.least.point);
+      const AnyVector reach = to_unit_.linear * (most.point - behind.point);
       grow(reach, nearest);
     }
     finish();
@@ -69,18 +81,18 @@ class WidthSearch {
   void push(std::int32_t first, std::int32_t last) {
     for (std::int32_t f = first; f < last; ++f) {
       if (!hull_.alive(f)) continue;
-      open_.push_back({1 / to_unit_.pull_back(hull_.facets()[f].normal).norm(), f});
+      open_.push_back({1 / to_unit_.pull_back(hull_.normal(f)).norm(), f});
       std::push_heap(open_.begin(), open_.end());
     }
   }
 
   /// K + (-K) is symmetric: the point and its mirror image.
-  void grow(const Vector<D>& reach, const Facet& nearest) {
+  void grow(const AnyVector& reach, const Facet& nearest) {
     const auto before = static_cast<std::int32_t>(hull_.facets().size());
     // `reach` is beyond this facet, since its width is more than (1 + stop) times the facet's distance.
     bool grown = hull_.insert(reach, nearest.facet);
     std::int64_t visited = 0;
-    const Vector<D> mirrored = -reach;
+    const AnyVector mirrored = -reach;
     const std::int32_t behind = hull_.locate(mirrored, before - 1, visited);
     if (hull_.gauge(behind, mirrored) > 1 + stop_ / 4) grown = hull_.insert(mirrored, behind) || grown;
     // Rounding keeps the point out: a little nearer to the origin it is a point of K + (-K), too.
@@ -104,28 +116,39 @@ class WidthSearch {
     result_.structure = structure_.size();
   }
 
-  const Body<D>& body_;
-  const DirectionalWidth<D>& structure_;
-  AffineMap<D> to_unit_;
+  const AnyBody& body_;
+  const detail::WidthStructure& structure_;
+  AnyMap to_unit_;
   double stop_;
-  detail::RadialHull<D> hull_;
+  detail::RadialHull hull_;
   std::vector<Facet> open_;
-  ApproximateWidth<D> result_;
+  AnyWidth result_;
 };
 
-}  // namespace
-
-template <int D>
-Expected<ApproximateWidth<D>> approximate_width(const Body<D>& body, double epsilon, Backend backend) {
+Expected<AnyWidth> width_of(const AnyBody& body, double epsilon, Backend backend) {
   const pd::detail::FloatingPointGuard guard;
   if (const auto error = detail::check_epsilon(epsilon)) return *error;
   // With k = kStructureShare: (1 + (1 - k) epsilon) / (1 - k epsilon / (1 + epsilon)) = 1 + epsilon; a hair less for
   // rounding.
   const double share = epsilon * (1 - 1e-4);
-  const Expected<DirectionalWidth<D>> structure =
-      DirectionalWidth<D>::build(body, kStructureShare * share / (1 + share), backend);
-  if (!structure) return structure.error();
-  return WidthSearch<D>(body, *structure, (1 - kStructureShare) * share).run();
+  const auto prepared = detail::PreparedBody::build(body, kStructureShare * share / (1 + share), backend);
+  if (!prepared) return prepared.error();
+  return WidthSearch(body, *prepared->structure, (1 - kStructureShare) * share).run();
+}
+
+template <int D>
+ApproximateWidth<D> fixed(const AnyWidth& r) {
+  return {r.width,    r.lower,   r.upper,    detail::fixed<D>(r.direction), r.bracket_reached, r.facets,
+          r.vertices, r.queries, r.structure};
+}
+
+}  // namespace
+
+template <int D>
+Expected<ApproximateWidth<D>> approximate_width(const Body<D>& body, double epsilon, Backend backend) {
+  const auto width = width_of(detail::any<D>(body), epsilon, backend);
+  if (!width) return width.error();
+  return fixed<D>(*width);
 }
 
 template <int D>

@@ -11,29 +11,43 @@ namespace pd::dimension {
 
 namespace {
 
+using detail::KernelBuilder;
+using detail::Points;
+using AnyKernel = EpsilonKernel<kAnyDimension>;
+
 /// Where no hull can be told from its points within rounding: the points that are not well inside join the kernel.
 constexpr double kInside = 1 - 1e-9;
 
-template <int D>
-void add_outer_points(const detail::KernelBuilder<D>& builder, std::span<const Vector<D>> points,
-                      EpsilonKernel<D>& kernel) {
+void add_outer_points(const KernelBuilder& builder, const Points& points, AnyKernel& kernel) {
   kernel.indices.clear();
-  const AffineMap<D> inverse = builder.to_unit().inverse();
+  const detail::AnyMap inverse = builder.to_unit().inverse();
   std::int32_t f = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vector<D> unit = builder.to_unit().linear * (points[i] - inverse.translation);
+    const detail::AnyVector unit = detail::in_frame(builder.to_unit().linear, inverse.translation, points.data(i));
     f = builder.hull().locate(unit, f, kernel.cones_visited);
     if (builder.hull().gauge(f, unit) > kInside) kernel.indices.push_back(static_cast<std::int64_t>(i));
   }
 }
 
-template <int D>
-EpsilonKernel<D> kernel_of(const detail::KernelBuilder<D>& builder) {
-  EpsilonKernel<D> r;
+AnyKernel kernel_of(const KernelBuilder& builder) {
+  AnyKernel r;
   for (const auto& p : builder.chosen()) r.indices.push_back(p.index);
   r.facets = builder.hull().num_facets();
   r.cones_visited = builder.cones_visited();
   return r;
+}
+
+AnyKernel kernel_of_points(const Points& points, const detail::AnyMap& fattening, double epsilon) {
+  KernelBuilder builder(fattening, epsilon);
+  builder.add(points, 0);
+  AnyKernel kernel = kernel_of(builder);
+  if (epsilon < detail::kLeastEpsilon) add_outer_points(builder, points, kernel);
+  return kernel;
+}
+
+template <int D>
+EpsilonKernel<D> fixed(AnyKernel kernel) {
+  return {std::move(kernel.indices), kernel.facets, kernel.cones_visited};
 }
 
 }  // namespace
@@ -46,16 +60,12 @@ Expected<EpsilonKernel<D>> epsilon_kernel(const Body<D>& body, double epsilon) {
     return Error{ErrorCode::unsupported,
                  "a kernel is a choice of the body's points; approximate a body of halfspaces instead", "a"};
   }
-  detail::KernelBuilder<D> builder(body.sandwich().fattening(), epsilon);
-  builder.add(body.points(), 0);
-  EpsilonKernel<D> kernel = kernel_of(builder);
-  if (epsilon < detail::kLeastEpsilon) add_outer_points<D>(builder, body.points(), kernel);
-  return kernel;
+  return fixed<D>(kernel_of_points(body.points(), detail::any<D>(body.sandwich()).fattening(), epsilon));
 }
 
 template <int D>
 EpsilonKernelStream<D>::EpsilonKernelStream(double epsilon)
-    : epsilon_(epsilon), core_(std::make_unique<detail::CoreSet<D>>()) {}
+    : epsilon_(epsilon), core_(std::make_unique<detail::CoreSet>()) {}
 template <int D>
 EpsilonKernelStream<D>::EpsilonKernelStream(EpsilonKernelStream&&) noexcept = default;
 template <int D>
@@ -75,7 +85,7 @@ Expected<EpsilonKernelStream<D>> EpsilonKernelStream<D>::create(double epsilon) 
 template <int D>
 std::optional<Error> EpsilonKernelStream<D>::survey(std::span<const Vector<D>> chunk) {
   const pd::detail::FloatingPointGuard guard;
-  if (auto error = detail::check_coordinates<D>(chunk, surveyed_)) return error;
+  if (auto error = detail::check_coordinates(chunk, surveyed_)) return error;
   core_->add(chunk);
   surveyed_ += static_cast<std::int64_t>(chunk.size());
   return std::nullopt;
@@ -84,9 +94,9 @@ std::optional<Error> EpsilonKernelStream<D>::survey(std::span<const Vector<D>> c
 template <int D>
 std::optional<Error> EpsilonKernelStream<D>::end_survey() {
   const pd::detail::FloatingPointGuard guard;
-  if (surveyed_ <= D) return detail::too_few_points_error<D>(surveyed_);
-  if (!core_->full_dimensional() || detail::too_thin<D>(core_->sandwich())) return detail::flat_error<D>("points");
-  builder_ = std::make_unique<detail::KernelBuilder<D>>(core_->sandwich().fattening(), epsilon_);
+  if (surveyed_ <= D) return detail::too_few_points_error(surveyed_, D);
+  if (!core_->full_dimensional() || detail::too_thin(core_->sandwich())) return detail::flat_error("points", D);
+  builder_ = std::make_unique<KernelBuilder>(core_->sandwich().fattening(), epsilon_);
   return std::nullopt;
 }
 
@@ -99,13 +109,13 @@ void EpsilonKernelStream<D>::select(std::span<const Vector<D>> chunk) {
 
 template <int D>
 EpsilonKernel<D> EpsilonKernelStream<D>::finish() {
-  return kernel_of(*builder_);
+  return fixed<D>(kernel_of(*builder_));
 }
 
 template <int D>
 std::vector<Vector<D>> EpsilonKernelStream<D>::kernel_points() const {
   std::vector<Vector<D>> points;
-  for (const auto& p : builder_->chosen()) points.push_back(p.point);
+  for (const auto& p : builder_->chosen()) points.push_back(detail::fixed<D>(p.point));
   return points;
 }
 

@@ -11,7 +11,6 @@ namespace pd::dimension::detail {
 
 /// Per facet of the hull: the first of the connected facets with the same plane, or -1 for a dead facet. Of the polar
 /// body, planes are vertices.
-template <int D>
-std::vector<std::int32_t> merge_equal_planes(const RadialHull<D>& hull);
+std::vector<std::int32_t> merge_equal_planes(const RadialHull& hull);
 
 }  // namespace pd::dimension::detail

@@ -5,23 +5,19 @@
 #include <span>
 #include <vector>
 
-#include "pd/dimension/body.hpp"
+#include "dimension/any_dimension.hpp"
 
 namespace pd::dimension::detail {
 
 /// Checks the halfspaces (`Body::from_halfspaces` names the errors) and finds a certified sandwich of their
 /// intersection.
-template <int D>
-Expected<Sandwich<D>> sandwich_of_halfspaces(std::span<const Halfspace<D>> halfspaces, double eta);
+Expected<AnySandwich> sandwich_of_halfspaces(const Halfspaces& halfspaces, double eta);
 
 /// Linear program in the frame of the body's sandwich, where everything is about a unit ball.
-template <int D>
-SupportPoint<D> extreme_point(std::span<const Halfspace<D>> halfspaces, const Sandwich<D>& sandwich,
-                              const Vector<D>& direction);
+AnySupport extreme_point(const Halfspaces& halfspaces, const AnySandwich& sandwich, const AnyVector& direction);
 
 /// The polar body's points in the frame of a sandwich: K = {centre + axes z : <q_i, z> <= 1 for all i}. They lie in the
 /// unit ball, and their hull holds the ball of radius 1 / ratio.
-template <int D>
-std::vector<Vector<D>> polar_points(std::span<const Halfspace<D>> halfspaces, const Sandwich<D>& sandwich);
+std::vector<AnyVector> polar_points(const Halfspaces& halfspaces, const AnySandwich& sandwich);
 
 }  // namespace pd::dimension::detail

@@ -16,9 +16,8 @@ namespace pd::dimension::detail {
 inline constexpr double kJoggle = 2e-3;
 
 /// The part by which point `index` is drawn nearer, somewhere in [0, kJoggle (limit - 1)), by a hash.
-template <int D>
-double joggle(std::int64_t index, double limit) {
-  if constexpr (D < 4) return 0;
+inline double joggle(int dimension, std::int64_t index, double limit) {
+  if (dimension < 4) return 0;
   std::uint64_t x = (static_cast<std::uint64_t>(index) + 1) * 0x9E3779B97F4A7C15U;
   x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9U;
   x = (x ^ (x >> 27)) * 0x94D049BB133111EBU;

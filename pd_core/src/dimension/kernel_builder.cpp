@@ -18,8 +18,7 @@ constexpr double kMostCells = 2e5;
 /// A survey of all cells costs about as much as this many searches for a point's cone in each.
 constexpr std::int64_t kSearchesACell = 4;
 /// From d = 4 on a cell meets dozens of cones, and its survey costs more than it saves (measured on 1e6 points).
-template <int D>
-constexpr bool kSurveys = D <= 3;
+constexpr int kMostSurveyed = 3;
 
 /// 1 / (1 - epsilon) with room for the roundings of gauges.
 double limit_of(double epsilon) { return 1 / (1 - std::max(epsilon, kLeastEpsilon) * (1 - 1e-4)); }
@@ -34,31 +33,28 @@ double cells_of(double epsilon, int dimension) {
 
 }  // namespace
 
-template <int D>
-KernelBuilder<D>::KernelBuilder(const AffineMap<D>& to_unit, double epsilon)
+KernelBuilder::KernelBuilder(const AnyMap& to_unit, double epsilon)
     : to_unit_(to_unit),
-      centre_(-(inverse_of<D>(to_unit.linear) * to_unit.translation)),
+      centre_(-(inverse_of<kAnyDimension>(to_unit.linear) * to_unit.translation)),
       limit_(limit_of(epsilon)),
-      hull_(start_radius(epsilon)),
-      cells_(cells_of(epsilon, D)),
+      hull_(static_cast<int>(centre_.size()), start_radius(epsilon)),
+      cells_(hull_.dimension(), cells_of(epsilon, hull_.dimension())),
       hints_(static_cast<std::size_t>(cells_.size()), 0),
       reach_(cells_),
       next_block_(kFirstBlock) {}
 
-template <int D>
-void KernelBuilder<D>::add(std::span<const Vector<D>> chunk, std::int64_t index) {
+void KernelBuilder::add(Points chunk, std::int64_t index) {
   while (!chunk.empty()) {
     const std::size_t size = std::min(next_block_, chunk.size());
-    add_block(chunk.first(size), index);
-    chunk = chunk.subspan(size);
+    add_block(chunk.part(0, size), index);
+    chunk = chunk.part(size, chunk.size() - size);
     index += static_cast<std::int64_t>(size);
     next_block_ = std::min(2 * next_block_, kLastBlock);
   }
 }
 
 /// Bounds that spare points their search, where the block or the searches so far are worth their price.
-template <int D>
-void KernelBuilder<D>::prepare_block(std::size_t size) {
+void KernelBuilder::prepare_block(std::size_t size) {
   const bool worth = located_ > patience_ * kSearchesACell * cells_.size();
   if (worth || hull_.facets().size() < size) {
     // The gauge is at most |p| over the nearest plane's distance.
@@ -66,7 +62,7 @@ void KernelBuilder<D>::prepare_block(std::size_t size) {
     near_squared_ = near * near;
   }
   if (!worth) return;
-  if constexpr (kSurveys<D>) {
+  if (hull_.dimension() <= kMostSurveyed) {
     // Where every cell has a facet that a few points more would split, as on spheres, bounds spare next to none.
     patience_ = spared_ < located_ ? 4 * patience_ : 1;
     reach_.survey(hull_, limit_, hints_, cones_visited_);
@@ -75,8 +71,7 @@ void KernelBuilder<D>::prepare_block(std::size_t size) {
 }
 
 /// Cell by cell, so that neighbours walk over the same facets while the nearest cache holds them.
-template <int D>
-void KernelBuilder<D>::sort_candidates() {
+void KernelBuilder::sort_candidates() {
   cell_begin_.assign(static_cast<std::size_t>(cells_.size()) + 1, 0);
   for (const Candidate& c : candidates_) ++cell_begin_[static_cast<std::size_t>(c.cell) + 1];
   std::partial_sum(cell_begin_.begin(), cell_begin_.end(), cell_begin_.begin());
@@ -87,15 +82,14 @@ void KernelBuilder<D>::sort_candidates() {
   }
 }
 
-template <int D>
-void KernelBuilder<D>::add_block(std::span<const Vector<D>> block, std::int64_t index) {
+void KernelBuilder::add_block(const Points& block, std::int64_t index) {
   prepare_block(block.size());
   lists_.resize(hull_.facets().size());
   candidates_.clear();
   for (std::size_t i = 0; i < block.size(); ++i) {
-    const Vector<D> unit = to_unit_.linear * (block[i] - centre_);
+    const AnyVector unit = in_frame(to_unit_.linear, centre_, block.data(i));
     if (unit.squaredNorm() <= near_squared_) continue;
-    const typename DirectionCells<D>::Place place = cells_.place(unit);
+    const DirectionCells::Place place = cells_.place(unit);
     if (reach_.holds(place, unit)) {
       ++spared_;
       continue;
@@ -106,18 +100,13 @@ void KernelBuilder<D>::add_block(std::span<const Vector<D>> block, std::int64_t 
   located_ += static_cast<std::int64_t>(candidates_.size());
   // The order jumps about in the block: what comes is fetched while what is there is searched.
   constexpr std::size_t kAhead = 8;
-  const auto fetch = [](const auto& object) {
-    for (std::size_t byte = 0; byte < sizeof object; byte += 64) {
-      __builtin_prefetch(reinterpret_cast<const char*>(&object) + byte);
-    }
-  };
   const auto candidate = [&](std::size_t n) -> const Candidate& {
     return candidates_[static_cast<std::size_t>(order_[n])];
   };
   for (std::size_t n = 0; n < order_.size(); ++n) {
     if (n + kAhead < order_.size()) {
-      fetch(candidate(n + kAhead));
-      fetch(hull_.facets()[hints_[static_cast<std::size_t>(candidate(n + kAhead / 2).cell)]]);
+      __builtin_prefetch(&candidate(n + kAhead));
+      hull_.prefetch(hints_[static_cast<std::size_t>(candidate(n + kAhead / 2).cell)]);
     }
     const Candidate& c = candidate(n);
     std::int32_t& hint = hints_[static_cast<std::size_t>(c.cell)];
@@ -138,9 +127,8 @@ void KernelBuilder<D>::add_block(std::span<const Vector<D>> block, std::int64_t 
 }
 
 /// Puts waiting point i into the list of its cone, or drops it.
-template <int D>
-void KernelBuilder<D>::assign(std::int32_t i, std::int32_t start) {
-  const Vector<D>& unit = waiting_[i].unit;
+void KernelBuilder::assign(std::int32_t i, std::int32_t start) {
+  const AnyVector& unit = waiting_[i].unit;
   const std::int32_t f = hull_.locate(unit, start, cones_visited_);
   const double gauge = hull_.gauge(f, unit);
   if (gauge <= limit_) return;
@@ -158,8 +146,7 @@ void KernelBuilder<D>::assign(std::int32_t i, std::int32_t start) {
 }
 
 /// Inserts the farthest point of all, again and again, until no list is left.
-template <int D>
-void KernelBuilder<D>::drain() {
+void KernelBuilder::drain() {
   while (!heap_.empty()) {
     std::pop_heap(heap_.begin(), heap_.end());
     const Waiting top = heap_.back();
@@ -193,13 +180,12 @@ void KernelBuilder<D>::drain() {
 
 /// A point that rounding keeps out of the hull enters a little nearer to the origin, which is a point of conv(kernel),
 /// too. False when even that fails.
-template <int D>
-bool KernelBuilder<D>::enter(const Point& p, std::int32_t f) {
+bool KernelBuilder::enter(const Point& p, std::int32_t f) {
   const auto id = static_cast<std::int32_t>(kernel_.size());
   kernel_.push_back(p);
-  const double nearer = joggle<D>(p.index, limit_);
+  const double nearer = joggle(hull_.dimension(), p.index, limit_);
   for (const double shrink : {0.0, 0x1p-36, 0x1p-30}) {
-    const Vector<D> at = (1 - shrink - nearer) * p.unit;
+    const AnyVector at = (1 - shrink - nearer) * p.unit;
     if (!hull_.insert(at, f)) continue;
     vertex_owner_.push_back(id);
     return true;
@@ -208,12 +194,11 @@ bool KernelBuilder<D>::enter(const Point& p, std::int32_t f) {
   return false;
 }
 
-template <int D>
-std::vector<typename KernelBuilder<D>::Point> KernelBuilder<D>::chosen() const {
+std::vector<KernelBuilder::Point> KernelBuilder::chosen() const {
   std::vector<char> used(kernel_.size(), 0);
-  for (const auto& f : hull_.facets()) {
-    if (f.successor >= 0) continue;
-    for (const std::int32_t v : f.vertex) {
+  for (std::int32_t f = 0; f < static_cast<std::int32_t>(hull_.facets().size()); ++f) {
+    if (!hull_.alive(f)) continue;
+    for (const std::int32_t v : hull_.vertices_of(f)) {
       if (kernel_of_vertex(v) >= 0) used[static_cast<std::size_t>(kernel_of_vertex(v))] = 1;
     }
   }
@@ -225,10 +210,5 @@ std::vector<typename KernelBuilder<D>::Point> KernelBuilder<D>::chosen() const {
   std::sort(r.begin(), r.end(), [](const Point& a, const Point& b) { return a.index < b.index; });
   return r;
 }
-
-template class KernelBuilder<2>;
-template class KernelBuilder<3>;
-template class KernelBuilder<4>;
-template class KernelBuilder<5>;
 
 }  // namespace pd::dimension::detail

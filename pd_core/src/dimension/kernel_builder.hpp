@@ -16,33 +16,32 @@ namespace pd::dimension::detail {
 /// Below, rounding in fattened frames of bodies of aspect 1e6 is no longer far below epsilon.
 inline constexpr double kLeastEpsilon = 1e-7;
 
-template <int D>
 class KernelBuilder {
  public:
   struct Point {
-    Vector<D> point;  ///< as given
-    Vector<D> unit;   ///< in the frame
+    AnyVector point;  ///< as given
+    AnyVector unit;   ///< in the frame
     std::int64_t index;
   };
 
   /// @param to_unit  maps the body to a set that holds the unit ball about the origin (up to 1e-9).
-  KernelBuilder(const AffineMap<D>& to_unit, double epsilon);
+  KernelBuilder(const AnyMap& to_unit, double epsilon);
 
   /// Points index, index + 1, ... of the body.
-  void add(std::span<const Vector<D>> chunk, std::int64_t index);
+  void add(Points chunk, std::int64_t index);
 
   /// In the order of their choice; those that later ones buried are among them.
   [[nodiscard]] const std::vector<Point>& kernel() const { return kernel_; }
-  [[nodiscard]] const RadialHull<D>& hull() const { return hull_; }
+  [[nodiscard]] const RadialHull& hull() const { return hull_; }
   /// Kernel points without a place in the hull.
   [[nodiscard]] const std::vector<std::int32_t>& unplaced() const { return unplaced_; }
   /// The kernel: the vertices of the hull and the unplaced points, in the order of their indices.
   [[nodiscard]] std::vector<Point> chosen() const;
   /// Kernel point of a hull's vertex, -1 for those of the start.
   [[nodiscard]] std::int32_t kernel_of_vertex(std::int32_t v) const {
-    return v < RadialHull<D>::kStartVertices ? -1 : vertex_owner_[v - RadialHull<D>::kStartVertices];
+    return v < hull_.start_vertices() ? -1 : vertex_owner_[v - hull_.start_vertices()];
   }
-  [[nodiscard]] const AffineMap<D>& to_unit() const { return to_unit_; }
+  [[nodiscard]] const AnyMap& to_unit() const { return to_unit_; }
   /// K lies in this times the hull.
   [[nodiscard]] double limit() const { return limit_; }
   [[nodiscard]] std::int64_t cones_visited() const { return cones_visited_; }
@@ -55,20 +54,20 @@ class KernelBuilder {
       return a.gauge != b.gauge ? a.gauge < b.gauge : a.facet > b.facet;
     }
   };
-  void add_block(std::span<const Vector<D>> block, std::int64_t index);
+  void add_block(const Points& block, std::int64_t index);
   void sort_candidates();
   void prepare_block(std::size_t size);
   void assign(std::int32_t i, std::int32_t start);
   void drain();
   bool enter(const Point& p, std::int32_t f);
 
-  AffineMap<D> to_unit_;
-  Vector<D> centre_;
+  AnyMap to_unit_;
+  AnyVector centre_;
   double limit_;
-  RadialHull<D> hull_;
-  DirectionCells<D> cells_;
+  RadialHull hull_;
+  DirectionCells cells_;
   std::vector<std::int32_t> hints_;  ///< per cell: the facet of the last point located from there
-  CellReach<D> reach_;
+  CellReach reach_;
   double near_squared_ = 0;   ///< points this near to the origin are inside whatever their direction
   std::int64_t located_ = 0;  ///< points whose cone was searched since the last survey of `reach_`
   std::int64_t spared_ = 0;   ///< and those whose search it spared
@@ -80,7 +79,7 @@ class KernelBuilder {
   std::size_t next_block_;
   // Points of the block whose cone is to be searched, and their order by cells of directions:
   struct Candidate {
-    Vector<D> unit;
+    AnyVector unit;
     std::int64_t cell;
     std::int32_t place;  ///< in the block
   };

@@ -8,16 +8,17 @@ namespace pd::dimension {
 
 template <int D>
 Matrix<D> inverse_of(const Matrix<D>& matrix) {
-  Matrix<D> inverse;
-  pd::detail::SmallElimination(matrix.data(), D).inverse(inverse.data());
+  Matrix<D> inverse = matrix;
+  pd::detail::SmallElimination(matrix.data(), static_cast<int>(matrix.rows())).inverse(inverse.data());
   return inverse;
 }
 
 template <int D>
 std::optional<Matrix<D>> inverse_if_regular(const Matrix<D>& matrix) {
-  const pd::detail::SmallElimination elimination(matrix.data(), D);
-  if (!elimination.regular(D * std::numeric_limits<double>::epsilon())) return std::nullopt;
-  Matrix<D> inverse;
+  const int size = static_cast<int>(matrix.rows());
+  const pd::detail::SmallElimination elimination(matrix.data(), size);
+  if (!elimination.regular(size * std::numeric_limits<double>::epsilon())) return std::nullopt;
+  Matrix<D> inverse = matrix;
   elimination.inverse(inverse.data());
   return inverse;
 }
@@ -29,6 +30,7 @@ PD_INSTANTIATE(2)
 PD_INSTANTIATE(3)
 PD_INSTANTIATE(4)
 PD_INSTANTIATE(5)
+PD_INSTANTIATE(kAnyDimension)
 #undef PD_INSTANTIATE
 
 }  // namespace pd::dimension

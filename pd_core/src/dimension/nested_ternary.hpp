@@ -22,7 +22,9 @@ LiftedMatrix frame_along(const Point& unit) {
   Point mirror = unit;
   const double sign = unit(n - 1) >= 0 ? 1 : -1;
   mirror(n - 1) += sign;
-  LiftedMatrix axes = LiftedMatrix::Identity(n, n) - (2 / mirror.squaredNorm()) * mirror * mirror.transpose();
+  LiftedMatrix axes = LiftedMatrix::Identity(n, n);
+  const double twice = 2 / mirror.squaredNorm();
+  for (Eigen::Index k = 0; k < n; ++k) add_scaled(&axes(0, k), -twice * mirror(k), mirror.data(), n);
   axes.col(n - 1) = -unit;
   return axes;
 }

@@ -88,14 +88,16 @@ void cut_directions(const OriginFrame& frame, const OriginGrowth& growth, Origin
   Point cut = frame.center();                                      // in K: separating directions have <centre, u> < 0
   double beyond = 0;
   while (log_volume > n * std::log(radius)) {
-    const Point image = shape * cut;
+    const Point image = product(shape, cut);
     const double spread = std::sqrt(cut.dot(image));
     const double depth = beyond / spread;  // of the cut, in the ellipsoid's own unit
     if (!(depth < 1)) break;               // nothing is left
     const double step = (1 + n * depth) / (n + 1);
     const double shrink = n * n / (n * n - 1) * (1 - depth * depth);
     u -= image * (step / spread);
-    shape = shrink * (shape - (2 * step / ((1 + depth) * spread * spread)) * image * image.transpose());
+    const double flattening = 2 * step / ((1 + depth) * spread * spread);
+    for (Eigen::Index k = 0; k < size; ++k) add_scaled(&shape(0, k), -flattening * image(k), image.data(), size);
+    shape *= shrink;
     log_volume += 0.5 * (n * std::log(shrink) + std::log1p(-2 * step / (1 + depth)));
     ++answer.cuts;
 
@@ -121,7 +123,7 @@ void minimise_envelope(const OriginFrame& frame, const OriginGrowth& growth, Ori
   const double alpha = height / frame.inner_radius();
   const LiftedMatrix axes = frame_along(frame.center() / height);
   const auto envelope = [&](const Point& w) {
-    const Point v = axes * w;
+    const Point v = product(axes, w);
     const Point high = frame.support(v);
     const double reach = high.dot(v);
     const double width = growth.least == 0 ? 0.0 : (high - frame.support(-v)).dot(v);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace pd::dimension::detail {
 
@@ -14,70 +15,82 @@ constexpr double kVisible = 1e-12;
 /// lambda down to this counts as inside the cone.
 constexpr double kInside = -1e-12;
 
-/// Inverse by Gauss and Jordan with partial pivots; false for a singular matrix.
-template <int D>
-bool invert(Matrix<D> a, Matrix<D>& r) {
-  r.setIdentity();
-  for (int k = 0; k < D; ++k) {
+/// Inverse by Gauss and Jordan with partial pivots, written column by column; false for a singular matrix.
+bool invert(const AnyMatrix& matrix, double* r) {
+  const int n = static_cast<int>(matrix.rows());
+  double a[kMaxDimension][2 * kMaxDimension] = {};
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) a[i][j] = matrix(i, j);
+    a[i][n + i] = 1;
+  }
+  for (int k = 0; k < n; ++k) {
     int pivot = k;
-    for (int i = k + 1; i < D; ++i) {
-      if (std::abs(a(i, k)) > std::abs(a(pivot, k))) pivot = i;
+    for (int i = k + 1; i < n; ++i) {
+      if (std::abs(a[i][k]) > std::abs(a[pivot][k])) pivot = i;
     }
-    if (!(std::abs(a(pivot, k)) > 0)) return false;
-    if (pivot != k) {
-      a.row(k).swap(a.row(pivot));
-      r.row(k).swap(r.row(pivot));
-    }
-    const double scale = 1 / a(k, k);
-    a.row(k) *= scale;
-    r.row(k) *= scale;
-    for (int i = 0; i < D; ++i) {
+    if (!(std::abs(a[pivot][k]) > 0)) return false;
+    if (pivot != k) std::swap(a[k], a[pivot]);
+    const double scale = 1 / a[k][k];
+    for (int j = 0; j < 2 * n; ++j) a[k][j] *= scale;
+    for (int i = 0; i < n; ++i) {
       if (i == k) continue;
-      const double factor = a(i, k);
-      a.row(i) -= factor * a.row(k);
-      r.row(i) -= factor * r.row(k);
+      const double factor = a[i][k];
+      for (int j = 0; j < 2 * n; ++j) a[i][j] -= factor * a[k][j];
     }
   }
-  return r.allFinite();
+  bool finite = true;
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) {
+      *r++ = a[i][n + j];
+      finite = finite && std::isfinite(a[i][n + j]);
+    }
+  }
+  return finite;
 }
 
 }  // namespace
 
-template <int D>
-RadialHull<D>::RadialHull(double start_radius)
-    : least_distance_(0.5 * start_radius / std::sqrt(static_cast<double>(D))) {
-  for (int k = 0; k < D; ++k) {
-    for (const double sign : {1.0, -1.0}) vertices_.push_back(sign * start_radius * Vector<D>::Unit(k));
+RadialHull::RadialHull(int dimension, double start_radius)
+    : dimension_(dimension),
+      stride_(static_cast<std::size_t>(dimension * dimension + dimension)),
+      least_distance_(0.5 * start_radius / std::sqrt(static_cast<double>(dimension))) {
+  for (int k = 0; k < dimension; ++k) {
+    for (const double sign : {1.0, -1.0}) vertices_.push_back(sign * start_radius * AnyVector::Unit(dimension, k));
   }
   // Facet with bits s: vertex k is +-e_k by bit k; its neighbour across the ridge without vertex k differs in that bit.
-  constexpr int kFacets = 1 << D;
-  for (int s = 0; s < kFacets; ++s) {
-    Facet f;
-    for (int k = 0; k < D; ++k) {
+  alive_ = std::int64_t{1} << dimension;
+  numbers_.resize(static_cast<std::size_t>(alive_) * stride_);
+  for (int s = 0; s < alive_; ++s) {
+    Facet f{};
+    for (int k = 0; k < dimension; ++k) {
       f.vertex[k] = 2 * k + ((s >> k) & 1);
       f.neighbour[k] = s ^ (1 << k);
     }
     f.successor = -1;
-    complete(f);
+    complete(f, numbers_.data() + stride_ * s);
     facets_.push_back(f);
   }
-  alive_ = kFacets;
   visible_.assign(facets_.size(), 0);
   cone_of_.resize(facets_.size());
 }
 
 /// Inverse and normal from the vertices; false where the facet is degenerate or comes too near to the origin.
-template <int D>
-bool RadialHull<D>::complete(Facet& facet) const {
-  Matrix<D> columns;
-  for (int k = 0; k < D; ++k) columns.col(k) = vertices_[facet.vertex[k]];
-  if (!invert<D>(columns, facet.inverse)) return false;
-  facet.normal = facet.inverse.colwise().sum().transpose();
-  return facet.normal.norm() * least_distance_ <= 1;
+bool RadialHull::complete(const Facet& facet, double* numbers) const {
+  AnyMatrix columns(dimension_, dimension_);
+  for (int k = 0; k < dimension_; ++k) columns.col(k) = vertices_[facet.vertex[k]];
+  if (!invert(columns, numbers)) return false;
+  double* const normal = numbers + dimension_ * dimension_;
+  double squared = 0;
+  for (int k = 0; k < dimension_; ++k) {
+    normal[k] = std::accumulate(numbers + k * dimension_, numbers + (k + 1) * dimension_, 0.0);
+    squared += normal[k] * normal[k];
+  }
+  return std::sqrt(squared) * least_distance_ <= 1;
 }
 
+/// The innermost loop of kernels, therefore one for each dimension.
 template <int D>
-std::int32_t RadialHull<D>::locate(const Vector<D>& p, std::int32_t start, std::int64_t& visited) const {
+std::int32_t RadialHull::walk(const double* point, std::int32_t start, std::int64_t& visited) const {
   std::int32_t f = start;
   while (facets_[f].successor >= 0) f = facets_[f].successor;
   std::int32_t previous = -1;
@@ -85,7 +98,7 @@ std::int32_t RadialHull<D>::locate(const Vector<D>& p, std::int32_t start, std::
   // Straight walks take about the number of facets to the power 1 / (D - 1); a longer one goes round in circles.
   for (std::int64_t steps = 0; steps < 200 + alive_; ++steps) {
     ++visited;
-    const Vector<D> lambda = facets_[f].inverse * p;
+    const Vector<D> lambda = image<D>(numbers(f), point);
     // The place of the least, by conditional moves: which it is cannot be foretold.
     double least = lambda[0];
     std::size_t k = 0;
@@ -101,11 +114,22 @@ std::int32_t RadialHull<D>::locate(const Vector<D>& p, std::int32_t start, std::
     previous_least = least;
     f = next;
   }
+  return -1;
+}
+
+std::int32_t RadialHull::locate(const AnyVector& p, std::int32_t start, std::int64_t& visited) const {
+  const std::int32_t met = dimension_ == 2   ? walk<2>(p.data(), start, visited)
+                           : dimension_ == 3 ? walk<3>(p.data(), start, visited)
+                           : dimension_ == 4 ? walk<4>(p.data(), start, visited)
+                                             : walk<5>(p.data(), start, visited);
+  if (met >= 0) return met;
   double best = -std::numeric_limits<double>::infinity();
+  std::int32_t f = start;
   for (std::int32_t g = 0; g < static_cast<std::int32_t>(facets_.size()); ++g) {
     if (!alive(g)) continue;
     ++visited;
-    const double least = (facets_[g].inverse * p).minCoeff();
+    const AnyVector lambda = inverse(g) * p;
+    const double least = lambda.minCoeff();
     if (least > best) {
       best = least;
       f = g;
@@ -114,14 +138,13 @@ std::int32_t RadialHull<D>::locate(const Vector<D>& p, std::int32_t start, std::
   return f;
 }
 
-template <int D>
-void RadialHull<D>::mark_visible(const Vector<D>& p, std::int32_t f) {
+void RadialHull::mark_visible(const AnyVector& p, std::int32_t f) {
   if (visible_[f] != 0) return;
   visible_[f] = 1;
   std::size_t next = removed_.size();
   removed_.push_back(f);
   for (; next < removed_.size(); ++next) {
-    for (const std::int32_t g : facets_[removed_[next]].neighbour) {
+    for (const std::int32_t g : neighbours_of(removed_[next])) {
       if (visible_[g] != 0 || !(gauge(g, p) > 1 + kVisible)) continue;
       visible_[g] = 1;
       removed_.push_back(g);
@@ -129,26 +152,27 @@ void RadialHull<D>::mark_visible(const Vector<D>& p, std::int32_t f) {
   }
 }
 
-template <int D>
-void RadialHull<D>::unmark() {
+void RadialHull::unmark() {
   for (const std::int32_t f : removed_) visible_[f] = 0;
 }
 
 /// Facets from vertex v over the horizon; false, with one more facet seen, where one of them would be degenerate.
-template <int D>
-bool RadialHull<D>::plan_cone(std::int32_t v) {
+bool RadialHull::plan_cone(std::int32_t v) {
   horizon_.clear();
   planned_.clear();
+  planned_numbers_.clear();
   for (std::size_t i = 0; i < removed_.size(); ++i) {
     const std::int32_t f = removed_[i];
-    for (int k = 0; k < D; ++k) {
+    for (int k = 0; k < dimension_; ++k) {
       const std::int32_t g = facets_[f].neighbour[k];
       if (visible_[g] != 0) continue;
       Facet facet = facets_[f];
       facet.vertex[k] = v;
       facet.neighbour[k] = g;
       // Same orientation as f, and the origin well inside.
-      const bool regular = facets_[f].inverse.row(k).dot(vertices_[v]) > 0 && complete(facet);
+      planned_numbers_.resize(planned_numbers_.size() + stride_);
+      const bool regular = inverse(f).row(k).dot(vertices_[v]) > 0 &&
+                           complete(facet, planned_numbers_.data() + planned_numbers_.size() - stride_);
       if (!regular) {
         mark_visible(vertices_[v], g);
         return false;
@@ -160,8 +184,7 @@ bool RadialHull<D>::plan_cone(std::int32_t v) {
   return true;
 }
 
-template <int D>
-bool RadialHull<D>::insert(const Vector<D>& p, std::int32_t f) {
+bool RadialHull::insert(const AnyVector& p, std::int32_t f) {
   removed_.clear();
   added_.clear();
   const auto v = static_cast<std::int32_t>(vertices_.size());
@@ -180,14 +203,14 @@ bool RadialHull<D>::insert(const Vector<D>& p, std::int32_t f) {
   return true;
 }
 
-template <int D>
-void RadialHull<D>::link_cone() {
+void RadialHull::link_cone() {
   for (std::size_t i = 0; i < planned_.size(); ++i) {
     const auto id = static_cast<std::int32_t>(facets_.size());
     facets_.push_back(planned_[i]);
     added_.push_back(id);
     cone_of_[horizon_[i].facet][horizon_[i].opposite] = id;
   }
+  numbers_.insert(numbers_.end(), planned_numbers_.begin(), planned_numbers_.end());
   visible_.resize(facets_.size(), 0);
   cone_of_.resize(facets_.size());
   for (std::size_t i = 0; i < added_.size(); ++i) {
@@ -196,11 +219,11 @@ void RadialHull<D>::link_cone() {
     Facet& facet = facets_[added_[i]];
     // The other side of the horizon.
     Facet& beyond = facets_[facet.neighbour[k]];
-    for (int m = 0; m < D; ++m) {
+    for (int m = 0; m < dimension_; ++m) {
       if (beyond.neighbour[m] == seen) beyond.neighbour[m] = added_[i];
     }
     // Round the ridge of codimension 2 without vertices k and j, through seen facets, to the horizon's next ridge.
-    for (int j = 0; j < D; ++j) {
+    for (int j = 0; j < dimension_; ++j) {
       if (j == k) continue;
       std::int32_t at = seen;
       std::int32_t pivot = facets_[seen].vertex[k];  // enters the next facet's ridge
@@ -209,10 +232,10 @@ void RadialHull<D>::link_cone() {
         const std::int32_t next = facets_[at].neighbour[leave];
         const Facet& g = facets_[next];
         int across = 0, stays = 0;
-        for (int m = 0; m < D; ++m) {
+        for (int m = 0; m < dimension_; ++m) {
           if (g.vertex[m] == pivot) across = m;
         }
-        for (int m = 0; m < D; ++m) {
+        for (int m = 0; m < dimension_; ++m) {
           if (g.neighbour[m] == at) stays = m;
         }
         // g holds the ridge, the pivot, and one vertex that is new: the pivot of the next step.
@@ -228,8 +251,7 @@ void RadialHull<D>::link_cone() {
   alive_ += static_cast<std::int64_t>(added_.size()) - static_cast<std::int64_t>(removed_.size());
 }
 
-template <int D>
-std::vector<std::int32_t> RadialHull<D>::compact() {
+std::vector<std::int32_t> RadialHull::compact() {
   std::vector<std::int32_t> renumbered(facets_.size(), -1);
   std::int32_t next = 0;
   for (std::size_t f = 0; f < facets_.size(); ++f) {
@@ -240,12 +262,20 @@ std::vector<std::int32_t> RadialHull<D>::compact() {
     if (facets_[f].successor >= 0) renumbered[f] = renumbered[static_cast<std::size_t>(facets_[f].successor)];
   }
   std::vector<Facet> living;
+  std::vector<double> numbers_left;
   living.reserve(static_cast<std::size_t>(next));
-  for (const Facet& f : facets_) {
-    if (f.successor >= 0) continue;
-    living.push_back(f);
-    for (std::int32_t& g : living.back().neighbour) g = renumbered[static_cast<std::size_t>(g)];
+  numbers_left.reserve(static_cast<std::size_t>(next) * stride_);
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    if (facets_[f].successor >= 0) continue;
+    living.push_back(facets_[f]);
+    for (int k = 0; k < dimension_; ++k) {
+      std::int32_t& g = living.back().neighbour[k];
+      g = renumbered[static_cast<std::size_t>(g)];
+    }
+    const double* const from = numbers(static_cast<std::int32_t>(f));
+    numbers_left.insert(numbers_left.end(), from, from + stride_);
   }
+  numbers_ = std::move(numbers_left);
   facets_ = std::move(living);
   visible_.assign(facets_.size(), 0);
   cone_of_.assign(facets_.size(), {});
@@ -254,18 +284,12 @@ std::vector<std::int32_t> RadialHull<D>::compact() {
   return renumbered;
 }
 
-template <int D>
-double RadialHull<D>::inner_radius() const {
+double RadialHull::inner_radius() const {
   double largest = 0;
-  for (const Facet& f : facets_) {
-    if (f.successor < 0) largest = std::max(largest, f.normal.squaredNorm());
+  for (std::int32_t f = 0; f < static_cast<std::int32_t>(facets_.size()); ++f) {
+    if (alive(f)) largest = std::max(largest, normal(f).squaredNorm());
   }
   return 1 / std::sqrt(largest);
 }
-
-template class RadialHull<2>;
-template class RadialHull<3>;
-template class RadialHull<4>;
-template class RadialHull<5>;
 
 }  // namespace pd::dimension::detail

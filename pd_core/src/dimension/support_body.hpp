@@ -7,8 +7,9 @@
 /// 10); these are the two halves of this interface.
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
+
+#include "dimension/any_dimension.hpp"
 
 namespace pd::dimension::detail {
 
@@ -20,21 +21,6 @@ using Point = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::DontAlign, kMaxLif
 /// A matrix of N rows and at most N columns; never on the heap.
 using LiftedMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::DontAlign, kMaxLiftedDimension, kMaxLiftedDimension>;
-
-/// <a, b> of few coordinates, for which Eigen's loops over any size take long to begin. Two sums, since an addition
-/// waits for the one before.
-inline double dot(const double* a, const double* b, Eigen::Index size) {
-  double even = 0, odd = 0;
-  for (Eigen::Index k = 1; k < size; k += 2) {
-    even += a[k - 1] * b[k - 1];
-    odd += a[k] * b[k];
-  }
-  return size % 2 == 0 ? even + odd : even + odd + a[size - 1] * b[size - 1];
-}
-/// to += scale * from
-inline void add_scaled(double* to, double scale, const double* from, Eigen::Index size) {
-  for (Eigen::Index k = 0; k < size; ++k) to[k] += scale * from[k];
-}
 
 /// K between two ellipsoids: for every v, <c, v> + |inner^T v| <= h_K(v) <= <c, v> + |outer^T v|. Both roots are lower
 /// triangular. Roots, not the matrices inner inner^T: those would square the body's aspect.

@@ -9,8 +9,8 @@ namespace pd::dimension {
 
 template <int D>
 struct AffineMap {
-  Matrix<D> linear = Matrix<D>::Identity();
-  Vector<D> translation = Vector<D>::Zero();
+  Matrix<D> linear = Matrix<D>::Identity(kInitialSize<D>, kInitialSize<D>);
+  Vector<D> translation = Vector<D>::Zero(kInitialSize<D>);
 
   [[nodiscard]] Vector<D> apply(const Vector<D>& point) const { return linear * point + translation; }
 
@@ -19,18 +19,13 @@ struct AffineMap {
 
   /// Requires a regular `linear`.
   [[nodiscard]] AffineMap inverse() const {
-    AffineMap r;
-    r.linear = inverse_of<D>(linear);
-    r.translation = -(r.linear * translation);
-    return r;
+    const Matrix<D> back = inverse_of<D>(linear);
+    return {back, -(back * translation)};
   }
 
   /// First `inner`, then this map.
   [[nodiscard]] AffineMap after(const AffineMap& inner) const {
-    AffineMap r;
-    r.linear = linear * inner.linear;
-    r.translation = apply(inner.translation);
-    return r;
+    return {linear * inner.linear, apply(inner.translation)};
   }
 };
 

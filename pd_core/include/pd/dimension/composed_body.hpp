@@ -20,7 +20,6 @@
 namespace pd::dimension {
 
 namespace detail {
-template <int D>
 struct ComposedNode;
 }
 
@@ -48,13 +47,14 @@ class ComposedBody {
   /// A point extreme up to epsilon() of the parts' widths. Requires equations() == 0.
   [[nodiscard]] SupportPoint<D> support(const Vector<D>& direction, QueryCounters& counters) const;
 
-  [[nodiscard]] const detail::ComposedNode<D>& node() const { return *node_; }
+  /// For the sources of this module.
+  [[nodiscard]] const std::shared_ptr<const detail::ComposedNode>& node() const { return node_; }
 
  private:
-  explicit ComposedBody(std::shared_ptr<const detail::ComposedNode<D>> node) : node_(std::move(node)) {}
+  explicit ComposedBody(std::shared_ptr<const detail::ComposedNode> node) : node_(std::move(node)) {}
   static Expected<ComposedBody> make(int kind, std::vector<ComposedBody> parts);
 
-  std::shared_ptr<const detail::ComposedNode<D>> node_;
+  std::shared_ptr<const detail::ComposedNode> node_;
 };
 
 }  // namespace pd::dimension

@@ -61,17 +61,7 @@ concept SupportOracle = requires(const Oracle& oracle, const Vector<D>& directio
 
 namespace detail {
 
-/// A backend; made by the factory below. Implementations: src/dimension/.
-template <int D>
-class WidthStructure {
- public:
-  WidthStructure() = default;
-  WidthStructure(const WidthStructure&) = delete;
-  WidthStructure& operator=(const WidthStructure&) = delete;
-  virtual ~WidthStructure() = default;
-  [[nodiscard]] virtual SupportPoint<D> support(const Vector<D>& direction, QueryCounters& counters) const = 0;
-  [[nodiscard]] virtual StructureSize size() const = 0;
-};
+class WidthStructure;
 
 }  // namespace detail
 
@@ -85,26 +75,21 @@ class DirectionalWidth {
   static Expected<DirectionalWidth> build(const Body<D>& body, double epsilon, Backend backend = Backend::kernel);
 
   /// A point of K, extreme up to epsilon. Directions have any length but zero.
-  [[nodiscard]] SupportPoint<D> support(const Vector<D>& direction, QueryCounters& counters) const {
-    return structure_->support(direction, counters);
-  }
+  [[nodiscard]] SupportPoint<D> support(const Vector<D>& direction, QueryCounters& counters) const;
 
-  [[nodiscard]] DirectionalWidthAnswer<D> width(const Vector<D>& direction, QueryCounters& counters) const {
-    DirectionalWidthAnswer<D> r{0, support(direction, counters), support(-direction, counters)};
-    r.least.value = -r.least.value;
-    r.width = (r.most.value - r.least.value) / direction.norm();
-    return r;
-  }
+  [[nodiscard]] DirectionalWidthAnswer<D> width(const Vector<D>& direction, QueryCounters& counters) const;
 
   [[nodiscard]] double epsilon() const { return epsilon_; }
   [[nodiscard]] Backend backend() const { return backend_; }
   [[nodiscard]] const Sandwich<D>& sandwich() const { return sandwich_; }
-  [[nodiscard]] StructureSize size() const { return structure_->size(); }
+  [[nodiscard]] StructureSize size() const;
+  /// For the sources of this module.
+  [[nodiscard]] const std::shared_ptr<const detail::WidthStructure>& structure() const { return structure_; }
 
  private:
   DirectionalWidth() = default;
 
-  std::shared_ptr<const detail::WidthStructure<D>> structure_;
+  std::shared_ptr<const detail::WidthStructure> structure_;
   Sandwich<D> sandwich_;
   double epsilon_ = 0;
   Backend backend_ = Backend::kernel;

@@ -25,9 +25,7 @@
 namespace pd::dimension {
 
 namespace detail {
-template <int D>
 class KernelBuilder;
-template <int D>
 class CoreSet;
 }  // namespace detail
 
@@ -74,8 +72,8 @@ class EpsilonKernelStream {
   double epsilon_;
   std::int64_t surveyed_ = 0;
   std::int64_t selected_ = 0;
-  std::unique_ptr<detail::CoreSet<D>> core_;
-  std::unique_ptr<detail::KernelBuilder<D>> builder_;
+  std::unique_ptr<detail::CoreSet> core_;
+  std::unique_ptr<detail::KernelBuilder> builder_;
 };
 
 }  // namespace pd::dimension

@@ -17,16 +17,14 @@ namespace pd::dimension {
 /// for the John ellipsoid; the ones here hold d (1 + eta), certified.
 template <int D>
 struct Sandwich {
-  Vector<D> centre = Vector<D>::Zero();
-  Matrix<D> axes = Matrix<D>::Identity();
+  Vector<D> centre = Vector<D>::Zero(kInitialSize<D>);
+  Matrix<D> axes = Matrix<D>::Identity(kInitialSize<D>, kInitialSize<D>);
   double ratio = 1;
 
   /// Maps C to the unit ball about O, so that the image of K is (1 / ratio)-fat.
   [[nodiscard]] AffineMap<D> fattening() const {
-    AffineMap<D> r;
-    r.linear = inverse_of<D>(axes);
-    r.translation = -(r.linear * centre);
-    return r;
+    const Matrix<D> back = inverse_of<D>(axes);
+    return {back, -(back * centre)};
   }
 };
 
@@ -34,8 +32,8 @@ struct Sandwich {
 /// as the body has not been mapped.
 template <int D>
 struct SandwichBox {
-  Vector<D> centre = Vector<D>::Zero();
-  Matrix<D> axes = Matrix<D>::Identity();
+  Vector<D> centre = Vector<D>::Zero(kInitialSize<D>);
+  Matrix<D> axes = Matrix<D>::Identity(kInitialSize<D>, kInitialSize<D>);
   double ratio = 1;
 
   /// The sandwich of the body's image.

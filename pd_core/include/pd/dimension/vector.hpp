@@ -11,10 +11,16 @@ namespace pd::dimension {
 
 inline constexpr int kMinDimension = 2;
 inline constexpr int kMaxDimension = 5;
+/// In place of D: known at run time. The sources compute with such vectors and matrices, which are never on the heap,
+/// so that they are compiled once and not for each D.
+inline constexpr int kAnyDimension = Eigen::Dynamic;
+template <int D>
+inline constexpr int kInitialSize = D == kAnyDimension ? 0 : D;
 
 template <int D>
-using Vector = Eigen::Matrix<double, D, 1, Eigen::DontAlign>;
+using Vector = Eigen::Matrix<double, D, 1, Eigen::DontAlign, D == kAnyDimension ? kMaxDimension : D, 1>;
 template <int D>
-using Matrix = Eigen::Matrix<double, D, D, Eigen::DontAlign>;
+using Matrix = Eigen::Matrix<double, D, D, Eigen::DontAlign, D == kAnyDimension ? kMaxDimension : D,
+                             D == kAnyDimension ? kMaxDimension : D>;
 
 }  // namespace pd::dimension

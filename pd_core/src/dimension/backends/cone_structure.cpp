@@ -23,48 +23,45 @@ double coarse_epsilon(std::size_t n, int dimension) {
   return std::clamp(std::pow(kFacets[dimension] / wanted, 2.0 / (dimension - 1)), 1e-5, 0.3);
 }
 
-template <int D>
-class ConeStructure : public WidthStructure<D> {
+class ConeStructure : public WidthStructure {
  public:
-  explicit ConeStructure(const Body<D>& body);
+  explicit ConeStructure(const AnyBody& body);
 
-  [[nodiscard]] SupportPoint<D> support(const Vector<D>& direction, QueryCounters& counters) const override;
+  [[nodiscard]] AnySupport support(const AnyVector& direction, QueryCounters& counters) const override;
   [[nodiscard]] StructureSize size() const override;
 
  private:
   struct Cone {
-    std::array<std::int32_t, D> vertex;     ///< nodes of the graph
-    std::array<std::int32_t, D> neighbour;  ///< cones
-    std::int32_t first;                     ///< of its points
+    std::array<std::int32_t, kMaxDimension> vertex;     ///< nodes of the graph
+    std::array<std::int32_t, kMaxDimension> neighbour;  ///< cones
+    std::int32_t first;                                 ///< of its points
     double gauge;
   };
-  void make_cones(const RadialHull<D>& hull, const KernelBuilder<D>& builder);
-  void fill_cones(std::span<const Vector<D>> points, const RadialHull<D>& hull, const AffineMap<D>& to_unit);
-  void scan(const Cone& cone, const Cone& next, const Vector<D>& direction, SupportPoint<D>& best,
+  void make_cones(const RadialHull& hull, const KernelBuilder& builder);
+  void fill_cones(const Points& points, const RadialHull& hull, const AnyMap& to_unit);
+  void scan(const Cone& cone, const Cone& next, const AnyVector& direction, AnySupport& best,
             QueryCounters& counters) const;
 
-  AffineMap<D> from_unit_;
-  std::shared_ptr<const KernelStructure<D>> graph_;
+  AnyMap from_unit_;
+  std::shared_ptr<const KernelStructure> graph_;
   std::vector<Cone> cones_;            ///< and one more, for the end of the last list
   std::vector<std::int32_t> cone_of_;  ///< facet of the hull -> cone
   std::vector<std::int32_t> cone_at_;  ///< graph node -> one of its cones
-  std::vector<Vector<D>> points_;
+  std::vector<AnyVector> points_;
   std::vector<std::int64_t> indices_;
   double largest_gauge_ = 1;
 };
 
-template <int D>
-ConeStructure<D>::ConeStructure(const Body<D>& body) {
-  KernelBuilder<D> builder(body.sandwich().fattening(), coarse_epsilon(body.points().size(), D));
-  builder.add(body.points(), 0);
+ConeStructure::ConeStructure(const AnyBody& body) {
+  KernelBuilder builder(body.sandwich.fattening(), coarse_epsilon(body.points.size(), body.dimension()));
+  builder.add(body.points, 0);
   from_unit_ = builder.to_unit().inverse();
-  graph_ = KernelStructure<D>::of_kernel(builder);
+  graph_ = KernelStructure::of_kernel(builder);
   make_cones(builder.hull(), builder);
-  fill_cones(body.points(), builder.hull(), builder.to_unit());
+  fill_cones(body.points, builder.hull(), builder.to_unit());
 }
 
-template <int D>
-void ConeStructure<D>::make_cones(const RadialHull<D>& hull, const KernelBuilder<D>& builder) {
+void ConeStructure::make_cones(const RadialHull& hull, const KernelBuilder& builder) {
   // Nodes know their points' indices; vertices of the hull know their kernel points.
   std::vector<std::pair<std::int64_t, std::int32_t>> by_index;
   for (std::size_t i = 0; i < graph_->nodes().size(); ++i) {
@@ -81,10 +78,11 @@ void ConeStructure<D>::make_cones(const RadialHull<D>& hull, const KernelBuilder
   for (std::size_t f = 0; f < hull.facets().size(); ++f) {
     if (hull.facets()[f].successor < 0) cone_of_[f] = count++;
   }
-  for (const auto& facet : hull.facets()) {
+  const int d = hull.dimension();
+  for (const RadialHull::Facet& facet : hull.facets()) {
     if (facet.successor >= 0) continue;
     Cone cone{};
-    for (int k = 0; k < D; ++k) {
+    for (int k = 0; k < d; ++k) {
       cone.vertex[k] = node_of(facet.vertex[k]);
       cone.neighbour[k] = cone_of_[facet.neighbour[k]];
       cone_at_[cone.vertex[k]] = static_cast<std::int32_t>(cones_.size());
@@ -94,17 +92,15 @@ void ConeStructure<D>::make_cones(const RadialHull<D>& hull, const KernelBuilder
   cones_.push_back({});
 }
 
-template <int D>
-void ConeStructure<D>::fill_cones(std::span<const Vector<D>> points, const RadialHull<D>& hull,
-                                  const AffineMap<D>& to_unit) {
+void ConeStructure::fill_cones(const Points& points, const RadialHull& hull, const AnyMap& to_unit) {
   const double near = hull.inner_radius() * (1 - kRoom);
   std::vector<std::int32_t> cone_of_point(points.size(), -1);
-  DirectionCells<D> cells(4 * static_cast<double>(cones_.size()));
+  DirectionCells cells(hull.dimension(), 4 * static_cast<double>(cones_.size()));
   std::vector<std::int32_t> hints(cells.size(), 0);
-  const Vector<D> centre = from_unit_.translation;
+  const AnyVector centre = from_unit_.translation;
   std::int64_t visited = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vector<D> unit = to_unit.linear * (points[i] - centre);
+    const AnyVector unit = in_frame(to_unit.linear, centre, points.data(i));
     if (unit.squaredNorm() <= near * near) continue;
     std::int32_t& hint = hints[cells.cell(unit)];
     hint = hull.locate(unit, hint, visited);
@@ -134,25 +130,24 @@ void ConeStructure<D>::fill_cones(std::span<const Vector<D>> points, const Radia
   }
 }
 
-template <int D>
-void ConeStructure<D>::scan(const Cone& cone, const Cone& next, const Vector<D>& direction, SupportPoint<D>& best,
-                            QueryCounters& counters) const {
+void ConeStructure::scan(const Cone& cone, const Cone& next, const AnyVector& direction, AnySupport& best,
+                         QueryCounters& counters) const {
   counters.dot_products += next.first - cone.first;
   for (std::int32_t i = cone.first; i < next.first; ++i) {
-    const double value = direction.dot(points_[i]);
+    const double value = dot(direction.data(), points_[i].data(), direction.size());
     if (value > best.value || (value == best.value && indices_[i] < best.index)) {
       best = {points_[i], value, indices_[i]};
     }
   }
 }
 
-template <int D>
-SupportPoint<D> ConeStructure<D>::support(const Vector<D>& direction, QueryCounters& counters) const {
+AnySupport ConeStructure::support(const AnyVector& direction, QueryCounters& counters) const {
   ++counters.queries;
-  const Vector<D> unit = from_unit_.pull_back(direction);
+  const auto d = direction.size();
+  const AnyVector unit = from_unit_.pull_back(direction);
   const std::int32_t top_node = graph_->extreme_node(unit, counters);
   const auto& node = graph_->nodes()[top_node];
-  SupportPoint<D> best{node.point, direction.dot(node.point), node.index};
+  AnySupport best{node.point, direction.dot(node.point), node.index};
   // Heights are compared in the frame, where the apex is the origin; a height above it of the best point, from below.
   const double apex = direction.dot(from_unit_.translation);
   const double size = direction.norm() * from_unit_.translation.norm() + unit.norm();
@@ -170,40 +165,39 @@ SupportPoint<D> ConeStructure<D>::support(const Vector<D>& direction, QueryCount
   std::int64_t visited = 0;
   for (std::size_t next = 0; next < open.size(); ++next) {
     const Cone& cone = cones_[open[next]];
-    double top = unit.dot(graph_->nodes()[cone.vertex[0]].unit);
-    for (int k = 1; k < D; ++k) top = std::max(top, unit.dot(graph_->nodes()[cone.vertex[k]].unit));
-    counters.dot_products += D;
+    const auto height = [&](int k) { return dot(unit.data(), graph_->nodes()[cone.vertex[k]].unit.data(), d); };
+    double top = height(0);
+    for (int k = 1; k < d; ++k) top = std::max(top, height(k));
+    counters.dot_products += d;
     ++visited;
     // Vertices above the bar over the largest gauge are connected in the hull's graph, so their cones are.
     if (top * largest_gauge_ < bar()) continue;
     if (top * cone.gauge >= bar()) scan(cone, (&cone)[1], direction, best, counters);
-    for (const std::int32_t c : cone.neighbour) visit(c);
+    for (int k = 0; k < d; ++k) visit(cone.neighbour[k]);
   }
   counters.nodes += visited;
   counters.deepest = std::max(counters.deepest, visited);
   return best;
 }
 
-template <int D>
-StructureSize ConeStructure<D>::size() const {
+StructureSize ConeStructure::size() const {
   StructureSize r;
   r.points = static_cast<std::int64_t>(points_.size());
   r.nodes = static_cast<std::int64_t>(cones_.size()) - 1;
-  r.links = r.nodes * D;
-  r.max_out_degree = D;
+  r.max_out_degree = from_unit_.translation.size();
+  r.links = r.nodes * r.max_out_degree;
   r.depth = 1;
   r.bytes =
-      graph_->size().bytes + static_cast<std::int64_t>(points_.size() * (sizeof(Vector<D>) + sizeof(std::int64_t)) +
+      graph_->size().bytes + static_cast<std::int64_t>(points_.size() * (sizeof(AnyVector) + sizeof(std::int64_t)) +
                                                        cones_.size() * sizeof(Cone));
   return r;
 }
 
 /// A linear program a query, in the frame of the body's sandwich.
-template <int D>
-class ProgramStructure : public WidthStructure<D> {
+class ProgramStructure : public WidthStructure {
  public:
-  explicit ProgramStructure(const Body<D>& body) : body_(body) {}
-  [[nodiscard]] SupportPoint<D> support(const Vector<D>& direction, QueryCounters& counters) const override {
+  explicit ProgramStructure(const AnyBody& body) : body_(body) {}
+  [[nodiscard]] AnySupport support(const AnyVector& direction, QueryCounters& counters) const override {
     ++counters.queries;
     counters.dot_products += body_.size();
     return body_.support(direction);
@@ -215,20 +209,14 @@ class ProgramStructure : public WidthStructure<D> {
   }
 
  private:
-  Body<D> body_;
+  AnyBody body_;
 };
 
 }  // namespace
 
-template <int D>
-std::shared_ptr<const WidthStructure<D>> exact_structure(const Body<D>& body) {
-  if (body.representation() == Representation::halfspaces) return std::make_shared<ProgramStructure<D>>(body);
-  return std::make_shared<ConeStructure<D>>(body);
+std::shared_ptr<const WidthStructure> exact_structure(const AnyBody& body) {
+  if (body.representation == Representation::halfspaces) return std::make_shared<ProgramStructure>(body);
+  return std::make_shared<ConeStructure>(body);
 }
-
-template std::shared_ptr<const WidthStructure<2>> exact_structure<2>(const Body<2>&);
-template std::shared_ptr<const WidthStructure<3>> exact_structure<3>(const Body<3>&);
-template std::shared_ptr<const WidthStructure<4>> exact_structure<4>(const Body<4>&);
-template std::shared_ptr<const WidthStructure<5>> exact_structure<5>(const Body<5>&);
 
 }  // namespace pd::dimension::detail

@@ -10,11 +10,10 @@
 
 #include <memory>
 
-#include "pd/dimension/directional_width.hpp"
+#include "dimension/backends/width_structure.hpp"
 
 namespace pd::dimension::detail {
 
-template <int D>
-std::shared_ptr<const WidthStructure<D>> exact_structure(const Body<D>& body);
+std::shared_ptr<const WidthStructure> exact_structure(const AnyBody& body);
 
 }  // namespace pd::dimension::detail

@@ -10,32 +10,60 @@
 
 namespace pd::dimension {
 
-template <int D>
-Expected<DirectionalWidth<D>> DirectionalWidth<D>::build(const Body<D>& body, double epsilon, Backend backend) {
+Expected<detail::PreparedBody> detail::PreparedBody::build(const AnyBody& body, double epsilon, Backend backend) {
   const pd::detail::FloatingPointGuard guard;
-  if (const auto error = detail::check_epsilon(epsilon)) return *error;
-  DirectionalWidth r;
-  r.sandwich_ = body.sandwich();
-  r.epsilon_ = epsilon;
-  r.backend_ = backend;
+  if (const auto error = check_epsilon(epsilon)) return *error;
+  PreparedBody r{nullptr, body.sandwich, epsilon, backend};
   switch (backend) {
     case Backend::exact:
-      r.structure_ = detail::exact_structure<D>(body);
+      r.structure = exact_structure(body);
       break;
     case Backend::kernel:
-      if (epsilon < detail::kLeastEpsilon) {
+      if (epsilon < kLeastEpsilon) {
         return Error{ErrorCode::bad_value, "the kernel backend needs epsilon >= 1e-7", "epsilon"};
       }
-      r.structure_ = detail::KernelStructure<D>::build(body, epsilon);
+      r.structure = KernelStructure::build(body, epsilon);
       break;
     case Backend::macbeath: {
-      auto structure = detail::macbeath_structure<D>(body, epsilon);
+      auto structure = macbeath_structure(body, epsilon);
       if (!structure) return structure.error();
-      r.structure_ = std::move(structure).value();
+      r.structure = std::move(structure).value();
       break;
     }
   }
   return r;
+}
+
+template <int D>
+Expected<DirectionalWidth<D>> DirectionalWidth<D>::build(const Body<D>& body, double epsilon, Backend backend) {
+  detail::AnyBody any = detail::any<D>(body);
+  any.storage = std::make_shared<const Body<D>>(body);
+  auto prepared = detail::PreparedBody::build(any, epsilon, backend);
+  if (!prepared) return prepared.error();
+  DirectionalWidth r;
+  r.structure_ = prepared->structure;
+  r.sandwich_ = body.sandwich();
+  r.epsilon_ = epsilon;
+  r.backend_ = backend;
+  return r;
+}
+
+template <int D>
+SupportPoint<D> DirectionalWidth<D>::support(const Vector<D>& direction, QueryCounters& counters) const {
+  return detail::fixed<D>(structure_->support(detail::any<D>(direction), counters));
+}
+
+template <int D>
+DirectionalWidthAnswer<D> DirectionalWidth<D>::width(const Vector<D>& direction, QueryCounters& counters) const {
+  DirectionalWidthAnswer<D> r{0, support(direction, counters), support(-direction, counters)};
+  r.least.value = -r.least.value;
+  r.width = (r.most.value - r.least.value) / direction.norm();
+  return r;
+}
+
+template <int D>
+StructureSize DirectionalWidth<D>::size() const {
+  return structure_->size();
 }
 
 template class DirectionalWidth<2>;

@@ -8,10 +8,11 @@
 
 namespace pd::dimension::detail {
 
-template <int D>
-KernelStructure<D>::KernelStructure(const AffineMap<D>& to_unit, std::vector<Node> nodes,
-                                    const std::vector<std::array<std::int32_t, 2>>& links)
-    : from_unit_(to_unit.inverse()), nodes_(std::move(nodes)), cells_(static_cast<double>(nodes_.size())) {
+KernelStructure::KernelStructure(const AnyMap& to_unit, std::vector<Node> nodes,
+                                 const std::vector<std::array<std::int32_t, 2>>& links)
+    : from_unit_(to_unit.inverse()),
+      nodes_(std::move(nodes)),
+      cells_(static_cast<int>(to_unit.translation.size()), static_cast<double>(nodes_.size())) {
   store_links(links);
   QueryCounters ignored;
   std::int32_t last = 0;
@@ -22,8 +23,7 @@ KernelStructure<D>::KernelStructure(const AffineMap<D>& to_unit, std::vector<Nod
 }
 
 /// Each node's neighbours in ascending order, once each; facets name them many times.
-template <int D>
-void KernelStructure<D>::store_links(const std::vector<std::array<std::int32_t, 2>>& links) {
+void KernelStructure::store_links(const std::vector<std::array<std::int32_t, 2>>& links) {
   std::vector<std::int32_t> end(nodes_.size() + 1, 0);
   for (const auto& [from, to] : links) ++end[static_cast<std::size_t>(from) + 1];
   std::partial_sum(end.begin(), end.end(), end.begin());
@@ -42,22 +42,21 @@ void KernelStructure<D>::store_links(const std::vector<std::array<std::int32_t, 
   }
 }
 
-template <int D>
-std::shared_ptr<const KernelStructure<D>> KernelStructure<D>::of_kernel(const KernelBuilder<D>& builder) {
-  const RadialHull<D>& hull = builder.hull();
+std::shared_ptr<const KernelStructure> KernelStructure::of_kernel(const KernelBuilder& builder) {
+  const RadialHull& hull = builder.hull();
   std::vector<std::int32_t> node_of(hull.vertices().size(), -1);
   std::vector<Node> nodes;
   std::vector<std::array<std::int32_t, 2>> links;
-  for (const auto& f : hull.facets()) {
-    if (f.successor >= 0) continue;
-    for (const std::int32_t v : f.vertex) {
+  for (std::int32_t f = 0; f < static_cast<std::int32_t>(hull.facets().size()); ++f) {
+    if (!hull.alive(f)) continue;
+    for (const std::int32_t v : hull.vertices_of(f)) {
       if (node_of[v] >= 0) continue;
       node_of[v] = static_cast<std::int32_t>(nodes.size());
       const auto& p = builder.kernel()[builder.kernel_of_vertex(v)];
       nodes.push_back({hull.vertices()[static_cast<std::size_t>(v)], p.point, p.index});
     }
-    for (const std::int32_t v : f.vertex) {
-      for (const std::int32_t w : f.vertex) {
+    for (const std::int32_t v : hull.vertices_of(f)) {
+      for (const std::int32_t w : hull.vertices_of(f)) {
         if (v != w) links.push_back({node_of[v], node_of[w]});
       }
     }
@@ -70,19 +69,18 @@ std::shared_ptr<const KernelStructure<D>> KernelStructure<D>::of_kernel(const Ke
   return r;
 }
 
-template <int D>
-std::shared_ptr<const KernelStructure<D>> KernelStructure<D>::build(const Body<D>& body, double epsilon) {
-  const Sandwich<D>& sandwich = body.sandwich();
-  if (body.representation() == Representation::points) {
-    KernelBuilder<D> builder(sandwich.fattening(), epsilon);
-    builder.add(body.points(), 0);
+std::shared_ptr<const KernelStructure> KernelStructure::build(const AnyBody& body, double epsilon) {
+  const AnySandwich& sandwich = body.sandwich;
+  if (body.representation == Representation::points) {
+    KernelBuilder builder(sandwich.fattening(), epsilon);
+    builder.add(body.points, 0);
     return of_kernel(builder);
   }
-  std::vector<Vector<D>> polar = polar_points<D>(body.halfspaces(), sandwich);
-  for (Vector<D>& q : polar) q *= sandwich.ratio;
-  KernelBuilder<D> builder({}, epsilon);
+  std::vector<AnyVector> polar = polar_points(body.halfspaces, sandwich);
+  for (AnyVector& q : polar) q *= sandwich.ratio;
+  KernelBuilder builder(identity_map(body.dimension()), epsilon);
   builder.add(polar, 0);
-  const RadialHull<D>& hull = builder.hull();
+  const RadialHull& hull = builder.hull();
   const std::vector<std::int32_t> same = merge_equal_planes(hull);
   std::vector<std::int32_t> node_of(hull.facets().size(), -1);
   std::vector<Node> nodes;
@@ -90,12 +88,12 @@ std::shared_ptr<const KernelStructure<D>> KernelStructure<D>::build(const Body<D
   for (std::int32_t f = 0; f < static_cast<std::int32_t>(hull.facets().size()); ++f) {
     if (!hull.alive(f) || same[f] != f) continue;
     node_of[f] = static_cast<std::int32_t>(nodes.size());
-    const Vector<D> unit = sandwich.ratio / builder.limit() * hull.facets()[f].normal;
+    const AnyVector unit = sandwich.ratio / builder.limit() * hull.normal(f);
     nodes.push_back({unit, sandwich.centre + sandwich.axes * unit, -1});
   }
   for (std::int32_t f = 0; f < static_cast<std::int32_t>(hull.facets().size()); ++f) {
     if (!hull.alive(f)) continue;
-    for (const std::int32_t g : hull.facets()[f].neighbour) {
+    for (const std::int32_t g : hull.neighbours_of(f)) {
       const std::int32_t a = node_of[same[f]], b = node_of[same[g]];
       if (a != b) links.push_back({a, b});
     }
@@ -103,16 +101,15 @@ std::shared_ptr<const KernelStructure<D>> KernelStructure<D>::build(const Body<D
   return std::shared_ptr<const KernelStructure>(new KernelStructure(sandwich.fattening(), std::move(nodes), links));
 }
 
-template <int D>
-std::int32_t KernelStructure<D>::climb(std::int32_t start, const Vector<D>& unit_direction,
-                                       QueryCounters& counters) const {
+std::int32_t KernelStructure::climb(std::int32_t start, const AnyVector& unit_direction,
+                                    QueryCounters& counters) const {
   std::int32_t at = start;
   double value = unit_direction.dot(nodes_[at].unit);
   std::int64_t steps = 1, products = 1;
   for (;;) {
     std::int32_t best = at;
     for (std::int32_t l = first_link_[at]; l < first_link_[at + 1]; ++l) {
-      const double other = unit_direction.dot(links_[l].unit);
+      const double other = dot(unit_direction.data(), links_[l].unit.data(), unit_direction.size());
       if (other > value) {
         value = other;
         best = links_[l].node;
@@ -129,12 +126,11 @@ std::int32_t KernelStructure<D>::climb(std::int32_t start, const Vector<D>& unit
   return at;
 }
 
-template <int D>
-SupportPoint<D> KernelStructure<D>::support(const Vector<D>& direction, QueryCounters& counters) const {
+AnySupport KernelStructure::support(const AnyVector& direction, QueryCounters& counters) const {
   ++counters.queries;
-  const Vector<D> unit = from_unit_.pull_back(direction);
+  const AnyVector unit = from_unit_.pull_back(direction);
   const Node& node = nodes_[extreme_node(unit, counters)];
-  SupportPoint<D> best{node.point, direction.dot(node.point), node.index};
+  AnySupport best{node.point, direction.dot(node.point), node.index};
   for (const Node& other : loose_) {
     const double value = direction.dot(other.point);
     if (value > best.value) best = {other.point, value, other.index};
@@ -142,8 +138,7 @@ SupportPoint<D> KernelStructure<D>::support(const Vector<D>& direction, QueryCou
   return best;
 }
 
-template <int D>
-StructureSize KernelStructure<D>::size() const {
+StructureSize KernelStructure::size() const {
   StructureSize r;
   r.points = r.nodes = static_cast<std::int64_t>(nodes_.size());
   r.links = static_cast<std::int64_t>(links_.size());
@@ -155,10 +150,5 @@ StructureSize KernelStructure<D>::size() const {
                                       (first_link_.size() + starts_.size()) * sizeof(std::int32_t));
   return r;
 }
-
-template class KernelStructure<2>;
-template class KernelStructure<3>;
-template class KernelStructure<4>;
-template class KernelStructure<5>;
 
 }  // namespace pd::dimension::detail

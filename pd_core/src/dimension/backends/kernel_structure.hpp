@@ -11,52 +11,51 @@
 #include <span>
 #include <vector>
 
+#include "dimension/backends/width_structure.hpp"
 #include "dimension/direction_cells.hpp"
 #include "dimension/kernel_builder.hpp"
-#include "pd/dimension/directional_width.hpp"
 
 namespace pd::dimension::detail {
 
-template <int D>
-class KernelStructure : public WidthStructure<D> {
+class KernelStructure : public WidthStructure {
  public:
   /// `epsilon` below `kLeastEpsilon` is taken as that.
-  static std::shared_ptr<const KernelStructure> build(const Body<D>& body, double epsilon);
+  static std::shared_ptr<const KernelStructure> build(const AnyBody& body, double epsilon);
   /// The vertices of the hull that a builder has grown.
-  static std::shared_ptr<const KernelStructure> of_kernel(const KernelBuilder<D>& builder);
+  static std::shared_ptr<const KernelStructure> of_kernel(const KernelBuilder& builder);
 
-  [[nodiscard]] SupportPoint<D> support(const Vector<D>& direction, QueryCounters& counters) const override;
+  [[nodiscard]] AnySupport support(const AnyVector& direction, QueryCounters& counters) const override;
   [[nodiscard]] StructureSize size() const override;
 
   struct Node {
-    Vector<D> unit;   ///< in the frame in which the body is fat; of points, where the hull has it
-    Vector<D> point;  ///< in the body's own
+    AnyVector unit;   ///< in the frame in which the body is fat; of points, where the hull has it
+    AnyVector point;  ///< in the body's own
     std::int64_t index;
   };
   [[nodiscard]] const std::vector<Node>& nodes() const { return nodes_; }
   /// A node that no neighbour is beyond, for a direction of the frame.
-  std::int32_t extreme_node(const Vector<D>& unit_direction, QueryCounters& counters) const {
+  std::int32_t extreme_node(const AnyVector& unit_direction, QueryCounters& counters) const {
     return climb(starts_[cells_.cell(unit_direction)], unit_direction, counters);
   }
 
  private:
-  std::int32_t climb(std::int32_t start, const Vector<D>& unit_direction, QueryCounters& counters) const;
+  std::int32_t climb(std::int32_t start, const AnyVector& unit_direction, QueryCounters& counters) const;
 
-  KernelStructure(const AffineMap<D>& to_unit, std::vector<Node> nodes,
+  KernelStructure(const AnyMap& to_unit, std::vector<Node> nodes,
                   const std::vector<std::array<std::int32_t, 2>>& links);
   void store_links(const std::vector<std::array<std::int32_t, 2>>& links);
 
-  AffineMap<D> from_unit_;
+  AnyMap from_unit_;
   std::vector<Node> nodes_;
   std::vector<Node> loose_;  ///< kernel points that rounding keeps out of the hull: scanned
   std::vector<std::int32_t> first_link_;
   /// A neighbour with its place, so that a step reads one run of memory and not a node here and a node there.
   struct Link {
-    Vector<D> unit;
+    AnyVector unit;
     std::int32_t node;
   };
   std::vector<Link> links_;
-  DirectionCells<D> cells_;
+  DirectionCells cells_;
   std::vector<std::int32_t> starts_;
 };
 

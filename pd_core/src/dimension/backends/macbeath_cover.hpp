@@ -19,48 +19,43 @@ inline constexpr double kLeafCoreScale = 0.9;
 inline constexpr double kLeafCoverScale = 1;
 
 /// A box on a face of the cube [-1, 1]^D: v[axis] = sign, the other coordinates in low .. low + side.
-template <int D>
 struct DirectionBox {
   int axis;
   double sign;
-  Vector<D> low;  ///< low[axis] = sign
+  AnyVector low;  ///< low[axis] = sign
   double side;
 
-  [[nodiscard]] Vector<D> corner(int k) const {
-    Vector<D> r = low;
-    for (int i = 0, bit = 0; i < D; ++i) {
-      if (i == axis) continue;
-      if ((k >> bit++) & 1) r[i] += side;
-    }
+  [[nodiscard]] int dimension() const { return static_cast<int>(low.size()); }
+  [[nodiscard]] int corners() const { return 1 << (dimension() - 1); }
+  [[nodiscard]] AnyVector corner(int k) const {
+    AnyVector r(low.size());
+    for (int i = 0, bit = 0; i < dimension(); ++i) r[i] = low[i] + (i != axis && ((k >> bit++) & 1) != 0 ? side : 0);
     return r;
   }
-  [[nodiscard]] Vector<D> middle() const {
-    Vector<D> r = low;
-    for (int i = 0; i < D; ++i) r[i] += i == axis ? 0 : 0.5 * side;
+  [[nodiscard]] AnyVector middle() const {
+    AnyVector r(low.size());
+    for (int i = 0; i < dimension(); ++i) r[i] = low[i] + (i == axis ? 0 : 0.5 * side);
     return r;
   }
   [[nodiscard]] DirectionBox child(int k) const {
     DirectionBox r = *this;
     r.side = 0.5 * side;
-    for (int i = 0, bit = 0; i < D; ++i) {
+    for (int i = 0, bit = 0; i < dimension(); ++i) {
       if (i == axis) continue;
       if ((k >> bit++) & 1) r.low[i] += r.side;
     }
     return r;
   }
-  static constexpr int kCorners = 1 << (D - 1);
 };
 
-template <int D>
-DirectionBox<D> cube_face(int face) {
-  DirectionBox<D> r{face / 2, face % 2 != 0 ? 1.0 : -1.0, Vector<D>::Constant(-1), 2};
+inline DirectionBox cube_face(int dimension, int face) {
+  DirectionBox r{face / 2, face % 2 != 0 ? 1.0 : -1.0, AnyVector::Constant(dimension, -1), 2};
   r.low[r.axis] = r.sign;
   return r;
 }
 
-template <int D>
-bool covers(const ShadowCone<D>& cone, const DirectionBox<D>& box) {
-  for (int k = 0; k < DirectionBox<D>::kCorners; ++k) {
+inline bool covers(const ShadowCone& cone, const DirectionBox& box) {
+  for (int k = 0; k < box.corners(); ++k) {
     if (!cone.contains(box.corner(k))) return false;  // the cone is convex: corners decide
   }
   return true;
@@ -69,24 +64,24 @@ bool covers(const ShadowCone<D>& cone, const DirectionBox<D>& box) {
 /// Whether a direction of the box lies in the cone, which is not everything; beyond rounding, false only where none
 /// does. The cone is {v : g(v) <= 0}, g(v) = sqrt(v' square v) - <axis, v>, and g convex: it is descended coordinate by
 /// coordinate from the box's middle until it is negative, or until its tangent plane is positive all over the box.
-template <int D>
-bool meets(const ShadowCone<D>& cone, const DirectionBox<D>& box) {
-  const Matrix<D> square = cone.axis * cone.axis.transpose() - cone.form;
-  Vector<D> v = box.middle();
-  Vector<D> image = square * v;
+inline bool meets(const ShadowCone& cone, const DirectionBox& box) {
+  AnyMatrix square = -cone.form;
+  add_outer(square, 1, cone.axis);
+  AnyVector v = box.middle();
+  AnyVector image = square * v;
   constexpr int kSweeps = 8;
   for (int sweep = 0; sweep <= kSweeps; ++sweep) {
     const double root = std::sqrt(std::max(v.dot(image), 0.0));
     double tangent = root - cone.axis.dot(v);
     if (!(tangent > 0)) return true;
-    for (int i = 0; i < D; ++i) {
+    for (int i = 0; i < box.dimension(); ++i) {
       if (i == box.axis) continue;
       const double slope = image[i] / root - cone.axis[i];
       tangent += slope * ((slope > 0 ? box.low[i] : box.low[i] + box.side) - v[i]);
     }
     constexpr double kSlack = 1e-9;
     if (tangent > kSlack * root) return false;
-    for (int i = 0; i < D; ++i) {
+    for (int i = 0; i < box.dimension(); ++i) {
       if (i == box.axis) continue;
       // Along the coordinate g is sqrt(a u^2 + rest) - l u and a constant, u measured from the root's least place.
       const double a = square(i, i), l = cone.axis[i];
@@ -105,38 +100,37 @@ bool meets(const ShadowCone<D>& cone, const DirectionBox<D>& box) {
 
 /// The cone's section with the plane of a face of the cube: in its coordinates y an ellipse
 /// (y - center)' form (y - center) <= 1, or nothing, or something unbounded.
-template <int D>
 class ShadowSection {
  public:
-  ShadowSection(const ShadowCone<D>& cone, const DirectionBox<D>& face) : cone_(cone) {
-    using Plane = Eigen::Matrix<double, D - 1, D - 1, Eigen::DontAlign>;
+  ShadowSection(const ShadowCone& cone, const DirectionBox& face) : cone_(cone) {
     if (cone.everything) return;
     // v' form v over v = (y, sign) is f + 2 <q, y> - y' P y.
-    Plane p;
-    Vector<D - 1> q;
-    for (int i = 0, row = 0; i < D; ++i) {
+    const int d = face.dimension();
+    AnyMatrix p(d - 1, d - 1);
+    AnyVector q(d - 1);
+    for (int i = 0, row = 0; i < d; ++i) {
       if (i == face.axis) continue;
       q[row] = face.sign * cone.form(i, face.axis);
-      for (int j = 0, column = 0; j < D; ++j) {
+      for (int j = 0, column = 0; j < d; ++j) {
         if (j != face.axis) p(row, column++) = -cone.form(i, j);
       }
       ++row;
     }
-    Plane lower = p;  // Cholesky, as the test of definiteness, too
-    for (int k = 0; k < D - 1; ++k) {
-      for (int i = k; i < D - 1; ++i) {
+    AnyMatrix lower = p;  // Cholesky, as the test of definiteness, too
+    for (int k = 0; k < d - 1; ++k) {
+      for (int i = k; i < d - 1; ++i) {
         for (int j = 0; j < k; ++j) lower(i, k) -= lower(i, j) * lower(k, j);
         if (i == k && !(lower(k, k) > 1e-9 * p(k, k))) return;  // unbounded, or too flat to be sure
         lower(i, k) = i == k ? std::sqrt(lower(k, k)) : lower(i, k) / lower(k, k);
       }
     }
-    const auto solve = [&](Vector<D - 1> x) {
-      for (int i = 0; i < D - 1; ++i) {
+    const auto solve = [&](AnyVector x) {
+      for (int i = 0; i < d - 1; ++i) {
         for (int k = 0; k < i; ++k) x[i] -= lower(i, k) * x[k];
         x[i] /= lower(i, i);
       }
-      for (int i = D - 2; i >= 0; --i) {
-        for (int k = i + 1; k < D - 1; ++k) x[i] -= lower(k, i) * x[k];
+      for (int i = d - 2; i >= 0; --i) {
+        for (int k = i + 1; k < d - 1; ++k) x[i] -= lower(k, i) * x[k];
         x[i] /= lower(i, i);
       }
       return x;
@@ -144,8 +138,8 @@ class ShadowSection {
     center_ = solve(q);
     const double constant = cone.form(face.axis, face.axis);
     const double height = constant + q.dot(center_);
-    Vector<D> along = face.low;
-    for (int i = 0, row = 0; i < D; ++i) {
+    AnyVector along = face.low;
+    for (int i = 0, row = 0; i < d; ++i) {
       if (i != face.axis) along[i] = center_[row++];
     }
     if (height < -1e-9 * (std::abs(constant) + std::abs(q.dot(center_))) || !(cone.axis.dot(along) > 0)) {
@@ -155,25 +149,27 @@ class ShadowSection {
     kind_ = Kind::ellipse;
     const double scale = std::max(height, 1e-9 * std::abs(constant)) * (1 + 1e-9);  // rounding errs on the larger side
     form_ = p / scale;
-    for (int i = 0; i < D - 1; ++i) {
-      extent_[i] = std::sqrt(solve(Vector<D - 1>::Unit(i))[i] * scale);
+    extent_.resize(d - 1);
+    for (int i = 0; i < d - 1; ++i) {
+      extent_[i] = std::sqrt(solve(AnyVector::Unit(d - 1, i))[i] * scale);
       width_ += std::sqrt(form_(i, i));
     }
   }
 
   /// Whether a direction of the box, on this face, is in the cone; beyond rounding, false only where none is. Bounds
   /// come first: alone they let 10 times more children through in R^4 than meet a parent, the more the finer the layer.
-  [[nodiscard]] bool meets(const DirectionBox<D>& box) const {
+  [[nodiscard]] bool meets(const DirectionBox& box) const {
     return cone_.everything || (may_meet(box) && detail::meets(cone_, box));
   }
 
  private:
-  [[nodiscard]] bool may_meet(const DirectionBox<D>& box) const {
+  [[nodiscard]] bool may_meet(const DirectionBox& box) const {
     if (kind_ == Kind::empty) return false;
     if (kind_ == Kind::unbounded) return in_ball(box);
     const double half = 0.5 * box.side;
-    Vector<D - 1> away;
-    for (int i = 0, row = 0; i < D; ++i) {
+    const int d = box.dimension();
+    AnyVector away(d - 1);
+    for (int i = 0, row = 0; i < d; ++i) {
       if (i == box.axis) continue;
       away[row] = box.low[i] + half - center_[row];
       if (std::abs(away[row]) > half + extent_[row]) return false;
@@ -183,18 +179,18 @@ class ShadowSection {
   }
 
   /// Bounds over the ball about the box's middle: (m + r)' form (m + r) <= m' form m + 2 |r| |form m| + |r|^2 |axis|^2.
-  [[nodiscard]] bool in_ball(const DirectionBox<D>& box) const {
-    const Vector<D> middle = box.middle();
-    const double radius = 0.5 * box.side * std::sqrt(static_cast<double>(D - 1));
+  [[nodiscard]] bool in_ball(const DirectionBox& box) const {
+    const AnyVector middle = box.middle();
+    const double radius = 0.5 * box.side * std::sqrt(static_cast<double>(box.dimension() - 1));
     if (cone_.axis.dot(middle) + radius * cone_.axis.norm() <= 0) return false;
-    const Vector<D> image = cone_.form * middle;
+    const AnyVector image = cone_.form * middle;
     return middle.dot(image) + 2 * radius * image.norm() + radius * radius * cone_.axis.squaredNorm() >= 0;
   }
 
-  ShadowCone<D> cone_;
+  ShadowCone cone_;
   enum class Kind { unbounded, empty, ellipse } kind_ = Kind::unbounded;
-  Vector<D - 1> center_, extent_;
-  Eigen::Matrix<double, D - 1, D - 1, Eigen::DontAlign> form_;
+  AnyVector center_, extent_;
+  AnyMatrix form_;
   double width_ = 0;  ///< of the box [-1, 1]^(D-1) in the ellipse's norm, at most
 };
 

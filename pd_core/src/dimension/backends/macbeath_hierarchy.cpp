@@ -13,34 +13,32 @@ namespace pd::dimension::detail {
 
 namespace {
 
-template <int D>
 struct HierarchyNode {
-  ShadowCone<D> shadow;      ///< of the cover scale
+  ShadowCone shadow;         ///< of the cover scale
   std::int32_t point;        ///< q of the region
   std::int32_t first_child;  ///< among the links
   std::int32_t children;
 };
 
-template <int D>
-class MacbeathHierarchy final : public WidthStructure<D> {
+class MacbeathHierarchy final : public WidthStructure {
  public:
-  std::vector<HierarchyNode<D>> nodes;
+  std::vector<HierarchyNode> nodes;
   std::vector<std::int32_t> links;
-  std::vector<SupportPoint<D>> points;  ///< as given, in K's space
+  std::vector<AnySupport> points;  ///< as given, in K's space
   std::int64_t layers = 0;
   std::int64_t max_out_degree = 0;
-  Matrix<D> pull_back;  ///< directions of K's space to directions of the frame
+  AnyMatrix pull_back;  ///< directions of K's space to directions of the frame
 
-  [[nodiscard]] SupportPoint<D> support(const Vector<D>& direction, QueryCounters& counters) const override {
-    const Vector<D> v = pull_back * direction;
+  [[nodiscard]] AnySupport support(const AnyVector& direction, QueryCounters& counters) const override {
+    const AnyVector v = pull_back * direction;
     const std::int32_t leaf = descend(v / v.cwiseAbs().maxCoeff(), counters);
-    SupportPoint<D> r = points[static_cast<std::size_t>(nodes[static_cast<std::size_t>(leaf)].point)];
+    AnySupport r = points[static_cast<std::size_t>(nodes[static_cast<std::size_t>(leaf)].point)];
     r.value = direction.dot(r.point);
     return r;
   }
 
   /// The node of the last layer built so far that shadows v.
-  [[nodiscard]] std::int32_t descend(const Vector<D>& v, QueryCounters& counters) const {
+  [[nodiscard]] std::int32_t descend(const AnyVector& v, QueryCounters& counters) const {
     ++counters.queries;
     std::int64_t path = 0;
     std::int32_t at = -1;
@@ -50,14 +48,14 @@ class MacbeathHierarchy final : public WidthStructure<D> {
       double least_miss = std::numeric_limits<double>::infinity();
       for (auto i = begin; i != end; ++i) {
         ++path;
-        const ShadowCone<D>& shadow = nodes[static_cast<std::size_t>(*i)].shadow;
+        const ShadowCone& shadow = nodes[static_cast<std::size_t>(*i)].shadow;
         if (shadow.contains(v)) {
           best = *i;
           break;
         }
         const double along = shadow.axis.dot(v);
         if (!(along > 0)) continue;
-        const double miss = -v.dot(shadow.form * v) / (along * along);
+        const double miss = -quadratic(shadow.form, v) / (along * along);
         if (miss < least_miss) {
           least_miss = miss;
           best = *i;
@@ -67,12 +65,12 @@ class MacbeathHierarchy final : public WidthStructure<D> {
     };
     step(root_ids.begin(), root_ids.end());
     while (nodes[static_cast<std::size_t>(at)].children > 0) {
-      const HierarchyNode<D>& node = nodes[static_cast<std::size_t>(at)];
+      const HierarchyNode& node = nodes[static_cast<std::size_t>(at)];
       const auto first = links.begin() + node.first_child;
       step(first, first + node.children);
     }
     counters.nodes += path;
-    counters.dot_products += path * (D + 1);
+    counters.dot_products += path * (v.size() + 1);
     counters.deepest = std::max(counters.deepest, path);
     return at;
   }
@@ -84,8 +82,8 @@ class MacbeathHierarchy final : public WidthStructure<D> {
     r.links = static_cast<std::int64_t>(links.size());
     r.max_out_degree = max_out_degree;
     r.depth = layers;
-    r.bytes = static_cast<std::int64_t>(nodes.size() * sizeof(HierarchyNode<D>) + links.size() * sizeof(std::int32_t) +
-                                        points.size() * sizeof(SupportPoint<D>));
+    r.bytes = static_cast<std::int64_t>(nodes.size() * sizeof(HierarchyNode) + links.size() * sizeof(std::int32_t) +
+                                        points.size() * sizeof(AnySupport));
     return r;
   }
 
@@ -93,11 +91,14 @@ class MacbeathHierarchy final : public WidthStructure<D> {
 };
 
 /// Builds one layer after the other.
-template <int D>
 class HierarchyBuilder {
  public:
-  HierarchyBuilder(PolarBody<D> polar, MacbeathHierarchy<D>& hierarchy, std::int64_t most_work)
-      : polar_(std::move(polar)), hierarchy_(hierarchy), work_left_(most_work) {}
+  HierarchyBuilder(PolarBody polar, MacbeathHierarchy& hierarchy, std::int64_t most_work)
+      : dimension_(polar.dimension()),
+        corners_(std::size_t{1} << (dimension_ - 1)),
+        polar_(std::move(polar)),
+        hierarchy_(hierarchy),
+        work_left_(most_work) {}
 
   /// @param delta  depth of the regions; of leaves, what their points may fall short by
   /// @return false where the budget is spent.
@@ -107,9 +108,9 @@ class HierarchyBuilder {
     first_ = static_cast<std::int32_t>(hierarchy_.nodes.size());
     cores_.clear();
     next_neighbours_.clear();
-    cells_.assign(2 * D, 0);
-    for (int face = 0; face < 2 * D; ++face) {
-      face_ = cube_face<D>(face);
+    cells_.assign(faces(), 0);
+    for (int face = 0; face < faces(); ++face) {
+      face_ = cube_face(dimension_, face);
       sections_.clear();
       std::vector<std::int32_t> near(cores_.size());
       std::iota(near.begin(), near.end(), first_);
@@ -130,13 +131,13 @@ class HierarchyBuilder {
  private:
   /// Subdivides the cell until every part lies in one cover shadow; regions enter where a middle is in no core shadow.
   /// @param near  nodes of this layer before `seen` that may meet the cell
-  bool cover(std::size_t cell, const DirectionBox<D>& box, const std::vector<std::int32_t>& outer, std::size_t seen) {
+  bool cover(std::size_t cell, const DirectionBox& box, const std::vector<std::int32_t>& outer, std::size_t seen) {
     work_left_ -= 1 + static_cast<std::int64_t>(outer.size() + cores_.size() - seen);
     if (work_left_ <= 0) return false;
     // Most boxes lie in one shadow and are not split: the lists of those that may meet a box are for its parts alone.
-    const Vector<D> middle = box.middle();
+    const AnyVector middle = box.middle();
     const auto holds = [&](std::int32_t id) {
-      const ShadowCone<D>& shadow = hierarchy_.nodes[static_cast<std::size_t>(id)].shadow;
+      const ShadowCone& shadow = hierarchy_.nodes[static_cast<std::size_t>(id)].shadow;
       return shadow.contains(middle) && covers(shadow, box);
     };
     for (const std::int32_t id : outer) {
@@ -161,10 +162,10 @@ class HierarchyBuilder {
       if (covers(hierarchy_.nodes[static_cast<std::size_t>(id)].shadow, box)) return settle(cell, id);
     }
     const std::size_t first_child = cells_.size();
-    cells_.resize(first_child + DirectionBox<D>::kCorners, 0);
+    cells_.resize(first_child + corners_, 0);
     cells_[cell] = static_cast<std::int64_t>(first_child);
     const std::size_t known = cores_.size();
-    for (int k = 0; k < DirectionBox<D>::kCorners; ++k) {
+    for (int k = 0; k < box.corners(); ++k) {
       if (!cover(first_child + static_cast<std::size_t>(k), box.child(k), near, known)) return false;
     }
     return true;
@@ -175,14 +176,14 @@ class HierarchyBuilder {
     return true;
   }
 
-  std::int32_t insert(const Vector<D>& v) {
+  std::int32_t insert(const AnyVector& v) {
     const auto id = static_cast<std::int32_t>(hierarchy_.nodes.size());
     work_left_ -= static_cast<std::int64_t>(polar_.points().size()) / kPointsAStep;
     const std::vector<std::int32_t>& candidates = parent_list(v);
     // Leaves are flat: their depth hardly matters (from .2 to .5 of epsilon the numbers of nodes differ by a tenth).
     constexpr double kDepth = 0.5;
-    const MacbeathRegion<D> region = leaves_ ? polar_.answering_region(v, kDepth * delta_, delta_, candidates)
-                                             : polar_.region(v, delta_, candidates);
+    const MacbeathRegion region = leaves_ ? polar_.answering_region(v, kDepth * delta_, delta_, candidates)
+                                          : polar_.region(v, delta_, candidates);
     hierarchy_.nodes.push_back({region.shadow(leaves_ ? kLeafCoverScale : kCoverScale), region.point, 0, 0});
     cores_.push_back(region.shadow(leaves_ ? kLeafCoreScale : kCoreScale));
     sections_.emplace_back(hierarchy_.nodes.back().shadow, face_);
@@ -190,7 +191,7 @@ class HierarchyBuilder {
     return id;
   }
 
-  const std::vector<std::int32_t>& parent_list(const Vector<D>& v) {
+  const std::vector<std::int32_t>& parent_list(const AnyVector& v) {
     if (hierarchy_.layers == 0) {
       if (all_.empty()) {
         all_.resize(polar_.points().size());
@@ -213,11 +214,11 @@ class HierarchyBuilder {
     list_nodes();
     mark_.assign(mark_.size(), -1);
     for (std::int32_t parent = previous_first_; parent < first_; ++parent) {
-      HierarchyNode<D>& node = hierarchy_.nodes[static_cast<std::size_t>(parent)];
+      HierarchyNode& node = hierarchy_.nodes[static_cast<std::size_t>(parent)];
       node.first_child = static_cast<std::int32_t>(hierarchy_.links.size());
-      for (int face = 0; face < 2 * D && work_left_ > 0; ++face) {
-        const DirectionBox<D> box = cube_face<D>(face);
-        collect(static_cast<std::size_t>(face), box, ShadowSection<D>(node.shadow, box), parent, false);
+      for (int face = 0; face < faces() && work_left_ > 0; ++face) {
+        const DirectionBox box = cube_face(dimension_, face);
+        collect(static_cast<std::size_t>(face), box, ShadowSection(node.shadow, box), parent, false);
       }
       node.children = static_cast<std::int32_t>(hierarchy_.links.size()) - node.first_child;
       hierarchy_.max_out_degree = std::max<std::int64_t>(hierarchy_.max_out_degree, node.children);
@@ -227,7 +228,7 @@ class HierarchyBuilder {
   /// The nodes below every split cell that has few, in the order in which a walk through its parts meets them.
   void list_nodes() {
     listed_.clear();
-    lists_.assign((cells_.size() - 2 * D) / DirectionBox<D>::kCorners, {});
+    lists_.assign((cells_.size() - static_cast<std::size_t>(faces())) / corners_, {});
     // Parts are younger than what they are parts of.
     for (std::size_t cell = cells_.size(); cell-- > 0;) {
       if (cells_[cell] < 0) continue;
@@ -242,7 +243,7 @@ class HierarchyBuilder {
         listed_.push_back(id);
       };
       list.known = true;
-      for (std::size_t k = 0; k < DirectionBox<D>::kCorners && list.known; ++k) {
+      for (std::size_t k = 0; k < corners_ && list.known; ++k) {
         const std::int64_t content = cells_[parts + k];
         if (content < 0) {
           take(static_cast<std::int32_t>(-1 - content));
@@ -259,7 +260,7 @@ class HierarchyBuilder {
   }
 
   /// @param inside  the box lies in the parent's shadow, and so do its parts: nothing is left to ask
-  void collect(std::size_t cell, const DirectionBox<D>& box, const ShadowSection<D>& shadow, std::int32_t parent,
+  void collect(std::size_t cell, const DirectionBox& box, const ShadowSection& shadow, std::int32_t parent,
                bool inside) {
     if (--work_left_ <= 0) return;
     const std::int64_t content = cells_[cell];
@@ -280,14 +281,14 @@ class HierarchyBuilder {
     if (list.known && std::all_of(first, last, seen)) return;
     if (!inside) {
       if (!shadow.meets(box)) return;
-      const ShadowCone<D>& cone = hierarchy_.nodes[static_cast<std::size_t>(parent)].shadow;
+      const ShadowCone& cone = hierarchy_.nodes[static_cast<std::size_t>(parent)].shadow;
       inside = cone.contains(box.middle()) && covers(cone, box);
     }
     if (inside && list.known) {
       std::for_each(first, last, link);
       return;
     }
-    for (int k = 0; k < DirectionBox<D>::kCorners; ++k) {
+    for (int k = 0; k < box.corners(); ++k) {
       collect(static_cast<std::size_t>(content) + static_cast<std::size_t>(k), box.child(k), shadow, parent, inside);
     }
   }
@@ -300,20 +301,24 @@ class HierarchyBuilder {
     std::size_t first, count;  ///< in `listed_`
     bool known;                ///< not longer than `kMostListed`
   };
-  NodeList& list_of(std::size_t parts) { return lists_[(parts - 2 * D) / DirectionBox<D>::kCorners]; }
+  NodeList& list_of(std::size_t parts) { return lists_[(parts - static_cast<std::size_t>(faces())) / corners_]; }
 
-  PolarBody<D> polar_;
-  MacbeathHierarchy<D>& hierarchy_;
+  [[nodiscard]] int faces() const { return 2 * dimension_; }
+
+  int dimension_;
+  std::size_t corners_;  ///< of a box
+  PolarBody polar_;
+  MacbeathHierarchy& hierarchy_;
   std::int64_t work_left_;
   double delta_ = 0;
   bool leaves_ = false;
   std::int32_t first_ = 0;
   std::int32_t previous_first_ = 0;
-  std::vector<ShadowCone<D>> cores_;        ///< of the layer's nodes
-  DirectionBox<D> face_{};                  ///< that is being covered
-  std::vector<ShadowSection<D>> sections_;  ///< of the layer's cover shadows with it
-  std::vector<std::int64_t> cells_;         ///< the first of its 2^(D-1) parts, or -1 - node
-  std::vector<NodeList> lists_;             ///< per split cell
+  std::vector<ShadowCone> cores_;        ///< of the layer's nodes
+  DirectionBox face_{};                  ///< that is being covered
+  std::vector<ShadowSection> sections_;  ///< of the layer's cover shadows with it
+  std::vector<std::int64_t> cells_;      ///< the first of its 2^(d-1) parts, or -1 - node
+  std::vector<NodeList> lists_;          ///< per split cell
   std::vector<std::int32_t> listed_;
   std::vector<std::int64_t> mark_;  ///< per node of the layer: the last cell, or parent, that took it
   std::vector<std::vector<std::int32_t>> neighbours_, next_neighbours_;  ///< per node of the layers above and now
@@ -322,16 +327,14 @@ class HierarchyBuilder {
 
 }  // namespace
 
-template <int D>
-std::unique_ptr<WidthStructure<D>> build_macbeath_hierarchy(const std::vector<SupportPoint<D>>& points,
-                                                            const AffineMap<D>& frame, double epsilon,
-                                                            std::int64_t most_work) {
-  auto hierarchy = std::make_unique<MacbeathHierarchy<D>>();
+std::unique_ptr<WidthStructure> build_macbeath_hierarchy(const std::vector<AnySupport>& points, const AnyMap& frame,
+                                                         double epsilon, std::int64_t most_work) {
+  auto hierarchy = std::make_unique<MacbeathHierarchy>();
   hierarchy->points = points;
-  hierarchy->pull_back = inverse_of<D>(frame.linear).transpose();
-  std::vector<Vector<D>> fat;
-  for (const SupportPoint<D>& p : points) fat.push_back(frame.apply(p.point));
-  HierarchyBuilder<D> builder(PolarBody<D>(std::move(fat)), *hierarchy, most_work);
+  hierarchy->pull_back = inverse_of<kAnyDimension>(frame.linear).transpose();
+  std::vector<AnyVector> fat;
+  for (const AnySupport& p : points) fat.push_back(frame.apply(p.point));
+  HierarchyBuilder builder(PolarBody(std::move(fat)), *hierarchy, most_work);
   constexpr double kFirst = 0.5;
   // Doubled from the leaves' upwards: a last layer that hardly differs from the one above would cost as much as it. The
   // first one is left out where the second is near it.
@@ -345,14 +348,5 @@ std::unique_ptr<WidthStructure<D>> build_macbeath_hierarchy(const std::vector<Su
   }
   return hierarchy;
 }
-
-#define PD_INSTANTIATE(D)                                                                                      \
-  template std::unique_ptr<WidthStructure<D>> build_macbeath_hierarchy<D>(const std::vector<SupportPoint<D>>&, \
-                                                                          const AffineMap<D>&, double, std::int64_t);
-PD_INSTANTIATE(2)
-PD_INSTANTIATE(3)
-PD_INSTANTIATE(4)
-PD_INSTANTIATE(5)
-#undef PD_INSTANTIATE
 
 }  // namespace pd::dimension::detail

@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "dimension/backends/macbeath_region.hpp"
-#include "pd/dimension/directional_width.hpp"
+#include "dimension/backends/width_structure.hpp"
 
 namespace pd::dimension::detail {
 
@@ -34,9 +34,8 @@ inline constexpr std::int64_t kMostMacbeathWork = 12'000'000;
 /// epsilon width_K at most.
 /// @param most_work  budget of operations
 /// @return null if the budget is spent.
-template <int D>
-[[nodiscard]] std::unique_ptr<WidthStructure<D>> build_macbeath_hierarchy(const std::vector<SupportPoint<D>>& points,
-                                                                          const AffineMap<D>& frame, double epsilon,
-                                                                          std::int64_t most_work = kMostMacbeathWork);
+[[nodiscard]] std::unique_ptr<WidthStructure> build_macbeath_hierarchy(const std::vector<AnySupport>& points,
+                                                                       const AnyMap& frame, double epsilon,
+                                                                       std::int64_t most_work = kMostMacbeathWork);
 
 }  // namespace pd::dimension::detail

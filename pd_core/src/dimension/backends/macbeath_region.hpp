@@ -16,60 +16,58 @@
 #include <span>
 #include <vector>
 
-#include "pd/dimension/vector.hpp"
+#include "dimension/any_dimension.hpp"
 
 namespace pd::dimension::detail {
 
 /// {v : v' form v >= 0, <axis, v> > 0}: the directions whose rays meet an ellipsoid that does not hold O, a convex
 /// cone; all directions where it does.
-template <int D>
 struct ShadowCone {
-  Matrix<D> form;
-  Vector<D> axis;
+  AnyMatrix form;
+  AnyVector axis;
   bool everything = false;
 
-  [[nodiscard]] bool contains(const Vector<D>& v) const {
-    return everything || (axis.dot(v) > 0 && v.dot(form * v) >= 0);
+  [[nodiscard]] bool contains(const AnyVector& v) const {
+    return everything || (dot(axis.data(), v.data(), v.size()) > 0 && quadratic(form, v) >= 0);
   }
 };
 
-template <int D>
 struct MacbeathRegion {
   std::int32_t point;   ///< q: the point of K whose facet of K* the ray through x hits
-  Vector<D> center;     ///< x
-  Matrix<D> ellipsoid;  ///< {x + z : z' ellipsoid z <= 1} lies in M(x), certified against every point
+  AnyVector center;     ///< x
+  AnyMatrix ellipsoid;  ///< {x + z : z' ellipsoid z <= 1} lies in M(x), certified against every point
 
   /// Of the region's ellipsoid scaled by c, which must leave O outside.
-  [[nodiscard]] ShadowCone<D> shadow(double c) const;
+  [[nodiscard]] ShadowCone shadow(double c) const;
 };
 
 /// The points of K that regions are cut from. O lies inside K.
-template <int D>
 class PolarBody {
  public:
-  explicit PolarBody(std::vector<Vector<D>> points) : points_(std::move(points)) {}
+  /// Requires a point.
+  explicit PolarBody(std::vector<AnyVector> points) : points_(std::move(points)) {}
 
-  [[nodiscard]] std::int32_t extreme(const Vector<D>& v) const;
+  [[nodiscard]] int dimension() const { return static_cast<int>(points_[0].size()); }
+  [[nodiscard]] std::int32_t extreme(const AnyVector& v) const;
   /// The region at (1 - delta) times the end of v's ray.
   /// @param candidates  points that may bound it: a start; every point is checked before the end
-  [[nodiscard]] MacbeathRegion<D> region(const Vector<D>& v, double delta,
-                                         std::span<const std::int32_t> candidates) const;
+  [[nodiscard]] MacbeathRegion region(const AnyVector& v, double delta, std::span<const std::int32_t> candidates) const;
   /// The region of the end of v's ray, drawn in by `depth`, in the pyramid of what the point there answers, grown as
   /// far as its shadow stays in that: <q, y> >= (1 - epsilon) h_K(y) for every y of the shadow of scale 1.
-  [[nodiscard]] MacbeathRegion<D> answering_region(const Vector<D>& v, double depth, double epsilon,
-                                                   std::span<const std::int32_t> candidates) const;
+  [[nodiscard]] MacbeathRegion answering_region(const AnyVector& v, double depth, double epsilon,
+                                                std::span<const std::int32_t> candidates) const;
   /// The points that can bound the regions between this one and the boundary, in its shadow.
-  [[nodiscard]] std::vector<std::int32_t> neighbours(const MacbeathRegion<D>& region,
+  [[nodiscard]] std::vector<std::int32_t> neighbours(const MacbeathRegion& region,
                                                      std::span<const std::int32_t> candidates) const;
-  [[nodiscard]] const std::vector<Vector<D>>& points() const { return points_; }
+  [[nodiscard]] const std::vector<AnyVector>& points() const { return points_; }
 
  private:
   /// The largest ellipsoid about O, nearly, in the slabs |<slab(p), z>| <= 1: of the candidates in shape, of all in
   /// size.
   template <class Slab>
-  [[nodiscard]] Matrix<D> ellipsoid_in(const Slab& slab, std::span<const std::int32_t> candidates) const;
+  [[nodiscard]] AnyMatrix ellipsoid_in(const Slab& slab, std::span<const std::int32_t> candidates) const;
 
-  std::vector<Vector<D>> points_;
+  std::vector<AnyVector> points_;
 };
 
 }  // namespace pd::dimension::detail

@@ -7,15 +7,13 @@
 
 #include <memory>
 
-#include "pd/dimension/directional_width.hpp"
+#include "dimension/backends/width_structure.hpp"
 
 namespace pd::dimension::detail {
 
 /// @param epsilon  in [2e-7, 1) for D < 4, in [8e-7, 1) above: .5 or .125 of it goes into the kernel, the rest into the
 ///                 hierarchy.
 /// @return bad_value ("epsilon").
-template <int D>
-[[nodiscard]] Expected<std::shared_ptr<const WidthStructure<D>>> macbeath_structure(const Body<D>& body,
-                                                                                    double epsilon);
+[[nodiscard]] Expected<std::shared_ptr<const WidthStructure>> macbeath_structure(const AnyBody& body, double epsilon);
 
 }  // namespace pd::dimension::detail

@@ -14,22 +14,21 @@ namespace pd::dimension {
 
 namespace detail {
 
-template <int D>
-double ComposedNode<D>::support(const Vector<D>& v, const double* u, Vector<D>& value, double* residuals,
-                                QueryCounters& counters) const {
+double ComposedNode::support(const AnyVector& v, const double* u, AnyVector& value, double* residuals,
+                             QueryCounters& counters) const {
   switch (kind) {
     case ComposedKind::leaf:
-      value = map.apply(body->support(map.pull_back(v), counters).point);
+      value = map.apply(body.structure->support(map.pull_back(v), counters).point);
       return v.dot(value);
     case ComposedKind::sum: {
-      value.setZero();
+      value.setZero(dimension);
       double reach = 0;
-      Vector<D> part_value;
-      for (const ComposedBody<D>& part : parts) {
-        reach += part.node().support(v, u, part_value, residuals, counters);
+      AnyVector part_value;
+      for (const Composed& part : parts) {
+        reach += part->support(v, u, part_value, residuals, counters);
         value += part_value;
-        u += part.node().equations;
-        residuals += part.node().equations;
+        u += part->equations;
+        residuals += part->equations;
       }
       return reach;
     }
@@ -38,48 +37,48 @@ double ComposedNode<D>::support(const Vector<D>& v, const double* u, Vector<D>& 
       double* winner = residuals;
       double* slot = residuals;
       int winner_size = 0;
-      Vector<D> part_value;
-      for (const ComposedBody<D>& part : parts) {
-        const double reach = part.node().support(v, u, part_value, slot, counters);
+      AnyVector part_value;
+      for (const Composed& part : parts) {
+        const double reach = part->support(v, u, part_value, slot, counters);
         if (reach > best) {
           std::fill(winner, winner + winner_size, 0.0);
           best = reach;
           value = part_value;
           winner = slot;
-          winner_size = part.node().equations;
+          winner_size = part->equations;
         } else {
-          std::fill(slot, slot + part.node().equations, 0.0);
+          std::fill(slot, slot + part->equations, 0.0);
         }
-        u += part.node().equations;
-        slot += part.node().equations;
+        u += part->equations;
+        slot += part->equations;
       }
       return best;
     }
     case ComposedKind::intersection:
       break;
   }
+  const auto d = static_cast<std::size_t>(dimension);
   const auto others = parts.size() - 1;
-  Vector<D> first_direction = v;
-  for (std::size_t i = 0; i < others; ++i) first_direction += Eigen::Map<const Vector<D>>(u + D * i);
-  const double* inner_u = u + D * others;
-  double* inner_residuals = residuals + D * others;
-  double reach = parts[0].node().support(first_direction, inner_u, value, inner_residuals, counters);
+  AnyVector first_direction = v;
+  for (std::size_t i = 0; i < others; ++i) first_direction += Eigen::Map<const AnyVector>(u + d * i, dimension);
+  const double* inner_u = u + d * others;
+  double* inner_residuals = residuals + d * others;
+  double reach = parts[0]->support(first_direction, inner_u, value, inner_residuals, counters);
   for (std::size_t i = 0; i < others; ++i) {
-    inner_u += parts[i].node().equations;
-    inner_residuals += parts[i].node().equations;
-    Vector<D> other;
-    const Vector<D> direction = -Eigen::Map<const Vector<D>>(u + D * i);
-    reach += parts[i + 1].node().support(direction, inner_u, other, inner_residuals, counters);
-    Eigen::Map<Vector<D>>(residuals + D * i) = value - other;
+    inner_u += parts[i]->equations;
+    inner_residuals += parts[i]->equations;
+    AnyVector other;
+    const AnyVector direction = -Eigen::Map<const AnyVector>(u + d * i, dimension);
+    reach += parts[i + 1]->support(direction, inner_u, other, inner_residuals, counters);
+    Eigen::Map<AnyVector>(residuals + d * i, dimension) = value - other;
   }
   return reach;
 }
 
-template <int D>
-EllipsoidBounds ComposedNode<D>::bounds(const LiftedMatrix& entry, Eigen::Index first_residual) const {
+EllipsoidBounds ComposedNode::bounds(const LiftedMatrix& entry, Eigen::Index first_residual) const {
   const Eigen::Index size = entry.rows();
   if (kind == ComposedKind::leaf) {
-    const Sandwich<D>& sandwich = body->sandwich();
+    const AnySandwich& sandwich = body.sandwich;
     EllipsoidBounds r = EllipsoidBounds::zero(size);
     r.center = product(entry, Point(map.apply(sandwich.centre)));
     add_to_root(r.inner, 1, product(entry, LiftedMatrix(map.linear * sandwich.axes)));
@@ -92,9 +91,9 @@ EllipsoidBounds ComposedNode<D>::bounds(const LiftedMatrix& entry, Eigen::Index 
     // With c the mean of the parts' centres: h(v) - <c, v> is at least the mean of |inner_i^T v|, and at most
     // |<c_i - c, v>| + |outer_i^T v| for some i, whose square is at most 2 (<c_i - c, v>^2 + |outer_i^T v|^2).
     std::vector<EllipsoidBounds> each;
-    for (const ComposedBody<D>& part : parts) {
-      each.push_back(part.node().bounds(entry, first_residual));
-      first_residual += part.node().equations;
+    for (const Composed& part : parts) {
+      each.push_back(part->bounds(entry, first_residual));
+      first_residual += part->equations;
       r.center += each.back().center / count;
     }
     for (const EllipsoidBounds& part : each) {
@@ -106,19 +105,20 @@ EllipsoidBounds ComposedNode<D>::bounds(const LiftedMatrix& entry, Eigen::Index 
     return r;
   }
   Eigen::Index slot =
-      first_residual + (kind == ComposedKind::intersection ? D * static_cast<Eigen::Index>(parts.size() - 1) : 0);
+      first_residual +
+      (kind == ComposedKind::intersection ? dimension * static_cast<Eigen::Index>(parts.size() - 1) : 0);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     LiftedMatrix part_entry = entry;
     if (kind == ComposedKind::intersection) {
       if (i > 0) part_entry.setZero();
       for (std::size_t k = 1; k < parts.size(); ++k) {
         if (i != 0 && i != k) continue;
-        const Eigen::Index row = first_residual + D * static_cast<Eigen::Index>(k - 1);
-        for (int c = 0; c < D; ++c) part_entry(row + c, c) += i == 0 ? 1.0 : -1.0;
+        const Eigen::Index row = first_residual + dimension * static_cast<Eigen::Index>(k - 1);
+        for (int c = 0; c < dimension; ++c) part_entry(row + c, c) += i == 0 ? 1.0 : -1.0;
       }
     }
-    const EllipsoidBounds part = parts[i].node().bounds(part_entry, slot);
-    slot += parts[i].node().equations;
+    const EllipsoidBounds part = parts[i]->bounds(part_entry, slot);
+    slot += parts[i]->equations;
     r.center += part.center;
     // Sums of roots are at least the root of the sum of squares, and at most sqrt(count) times that.
     add_to_root(r.inner, 1, part.inner);
@@ -127,21 +127,25 @@ EllipsoidBounds ComposedNode<D>::bounds(const LiftedMatrix& entry, Eigen::Index 
   return r;
 }
 
-}  // namespace detail
+AnySupport ComposedNode::support(const AnyVector& v, QueryCounters& counters) const {
+  AnySupport r;
+  r.value = support(v, nullptr, r.point, nullptr, counters);
+  return r;
+}
 
-template <int D>
-Expected<ComposedBody<D>> ComposedBody<D>::of(DirectionalWidth<D> body, const AffineMap<D>& map) {
+Expected<Composed> leaf_of(PreparedBody body, const AnyMap& map) {
   if (!map.linear.allFinite() || !map.translation.allFinite()) {
     return Error{ErrorCode::non_finite, "the affine map holds a number that is not finite", "affine"};
   }
   const double scale = map.linear.cwiseAbs().maxCoeff();
-  const Matrix<D> unit = map.linear / (scale > 0 ? scale : 1);
-  if (!inverse_if_regular<D>(unit)) {
+  const AnyMatrix unit = map.linear / (scale > 0 ? scale : 1);
+  if (!inverse_if_regular<kAnyDimension>(unit)) {
     return Error{ErrorCode::bad_value, "the matrix is singular; the image would be flat", "affine.matrix"};
   }
-  auto node = std::make_shared<detail::ComposedNode<D>>();
-  const Sandwich<D>& sandwich = body.sandwich();
-  const Matrix<D> axes = map.linear * sandwich.axes;
+  auto node = std::make_shared<ComposedNode>();
+  node->dimension = static_cast<int>(map.translation.size());
+  const AnySandwich& sandwich = body.sandwich;
+  const AnyMatrix axes = map.linear * sandwich.axes;
   // Of the image and of the terms that it is summed from.
   node->magnitude = map.linear.cwiseAbs().rowwise().sum().maxCoeff() *
                         (sandwich.centre.cwiseAbs().maxCoeff() + sandwich.ratio * sandwich.axes.norm()) +
@@ -149,31 +153,32 @@ Expected<ComposedBody<D>> ComposedBody<D>::of(DirectionalWidth<D> body, const Af
   if (!(node->magnitude < kMaxCoordinate)) {
     return Error{ErrorCode::out_of_range, "the image's coordinates exceed 1e100", "affine"};
   }
-  node->epsilon = body.backend() == Backend::exact ? 0 : body.epsilon();
-  node->consistent = body.backend() != Backend::macbeath;
+  node->epsilon = body.backend == Backend::exact ? 0 : body.epsilon;
+  node->consistent = body.backend != Backend::macbeath;
   node->centre = map.apply(sandwich.centre);
-  detail::LiftedMatrix inner = detail::LiftedMatrix::Zero(D, D);
-  detail::add_to_root(inner, 1, axes);
+  LiftedMatrix inner = LiftedMatrix::Zero(node->dimension, node->dimension);
+  add_to_root(inner, 1, axes);
   node->inner = inner;
   node->body = std::move(body);
   node->map = map;
-  return ComposedBody(std::move(node));
+  return Composed(std::move(node));
 }
 
-template <int D>
-Expected<ComposedBody<D>> ComposedBody<D>::make(int kind, std::vector<ComposedBody> parts) {
+Expected<Composed> composed_of(ComposedKind kind, std::vector<Composed> parts) {
   if (parts.empty()) return Error{ErrorCode::bad_value, "an empty list of bodies; at least one is needed", ""};
   if (parts.size() == 1) return parts[0];
-  auto node = std::make_shared<detail::ComposedNode<D>>();
-  node->kind = static_cast<detail::ComposedKind>(kind);
-  node->radial = node->kind == detail::ComposedKind::sum;
-  std::size_t equations = node->kind == detail::ComposedKind::intersection ? D * (parts.size() - 1) : 0;
-  for (const ComposedBody& part : parts) {
-    equations += static_cast<std::size_t>(part.equations());
-    node->epsilon = std::max(node->epsilon, part.epsilon());
-    node->radial = node->radial && part.node().radial;
-    node->consistent = node->consistent && part.node().consistent;
-    node->magnitude += part.node().magnitude;
+  auto node = std::make_shared<ComposedNode>();
+  node->kind = kind;
+  node->dimension = parts[0]->dimension;
+  node->radial = node->kind == ComposedKind::sum;
+  std::size_t equations =
+      node->kind == ComposedKind::intersection ? static_cast<std::size_t>(node->dimension) * (parts.size() - 1) : 0;
+  for (const Composed& part : parts) {
+    equations += static_cast<std::size_t>(part->equations);
+    node->epsilon = std::max(node->epsilon, part->epsilon);
+    node->radial = node->radial && part->radial;
+    node->consistent = node->consistent && part->consistent;
+    node->magnitude += part->magnitude;
   }
   if (equations > kMaxEquations) {
     return Error{ErrorCode::limit_exceeded,
@@ -183,7 +188,26 @@ Expected<ComposedBody<D>> ComposedBody<D>::make(int kind, std::vector<ComposedBo
   }
   node->equations = static_cast<int>(equations);
   node->parts = std::move(parts);
-  return ComposedBody(std::move(node));
+  return Composed(std::move(node));
+}
+
+}  // namespace detail
+
+template <int D>
+Expected<ComposedBody<D>> ComposedBody<D>::of(DirectionalWidth<D> body, const AffineMap<D>& map) {
+  const auto leaf = detail::leaf_of({body.structure(), detail::any<D>(body.sandwich()), body.epsilon(), body.backend()},
+                                    detail::any<D>(map));
+  if (!leaf) return leaf.error();
+  return ComposedBody(*leaf);
+}
+
+template <int D>
+Expected<ComposedBody<D>> ComposedBody<D>::make(int kind, std::vector<ComposedBody> parts) {
+  std::vector<detail::Composed> nodes;
+  for (const ComposedBody& part : parts) nodes.push_back(part.node_);
+  const auto made = detail::composed_of(static_cast<detail::ComposedKind>(kind), std::move(nodes));
+  if (!made) return made.error();
+  return ComposedBody(*made);
 }
 
 template <int D>
@@ -210,18 +234,12 @@ int ComposedBody<D>::equations() const {
 
 template <int D>
 SupportPoint<D> ComposedBody<D>::support(const Vector<D>& direction, QueryCounters& counters) const {
-  SupportPoint<D> r;
-  r.value = node_->support(direction, nullptr, r.point, nullptr, counters);
-  return r;
+  return detail::fixed<D>(node_->support(detail::any<D>(direction), counters));
 }
 
-#define PD_INSTANTIATE(D)         \
-  template class ComposedBody<D>; \
-  template struct detail::ComposedNode<D>;
-PD_INSTANTIATE(2)
-PD_INSTANTIATE(3)
-PD_INSTANTIATE(4)
-PD_INSTANTIATE(5)
-#undef PD_INSTANTIATE
+template class ComposedBody<2>;
+template class ComposedBody<3>;
+template class ComposedBody<4>;
+template class ComposedBody<5>;
 
 }  // namespace pd::dimension

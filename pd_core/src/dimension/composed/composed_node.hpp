@@ -8,9 +8,10 @@
 /// whose own residuals are zero.
 #pragma once
 
-#include <optional>
+#include <memory>
 #include <vector>
 
+#include "dimension/backends/width_structure.hpp"
 #include "dimension/support_body.hpp"
 #include "pd/dimension/composed_body.hpp"
 
@@ -18,15 +19,18 @@ namespace pd::dimension::detail {
 
 enum class ComposedKind { leaf, sum, hull, intersection };
 
-template <int D>
+struct ComposedNode;
+using Composed = std::shared_ptr<const ComposedNode>;
+
 struct ComposedNode {
   ComposedKind kind = ComposedKind::leaf;
-  std::optional<DirectionalWidth<D>> body;  ///< of a leaf
-  AffineMap<D> map;                         ///< of a leaf
-  Vector<D> centre = Vector<D>::Zero();     ///< of a leaf: that of its sandwich, mapped
+  int dimension = 0;
+  PreparedBody body;  ///< of a leaf
+  AnyMap map;         ///< of a leaf
+  AnyVector centre;   ///< of a leaf: that of its sandwich, mapped
   /// Of a leaf: the lower triangular root of its inner ellipsoid, mapped; the outer one is the sandwich's ratio larger.
-  Matrix<D> inner = Matrix<D>::Zero();
-  std::vector<ComposedBody<D>> parts;  ///< of the others
+  AnyMatrix inner;
+  std::vector<Composed> parts;  ///< of the others
   int equations = 0;
   double epsilon = 0;
   double magnitude = 0;  ///< largest |coordinate| in the parts, or larger
@@ -36,12 +40,19 @@ struct ComposedNode {
   bool consistent = true;  ///< every leaf answers from one fixed set
 
   /// Supports in the direction (v, u): writes the value and the residuals, returns <v, value> + <u, residuals>.
-  double support(const Vector<D>& v, const double* u, Vector<D>& value, double* residuals,
+  double support(const AnyVector& v, const double* u, AnyVector& value, double* residuals,
                  QueryCounters& counters) const;
+  /// `ComposedBody<D>::support`. Requires equations == 0.
+  AnySupport support(const AnyVector& v, QueryCounters& counters) const;
 
   /// The ellipsoids of the image under (value, residuals) -> entry * value + residuals at the coordinates from
   /// `first_residual` on.
   [[nodiscard]] EllipsoidBounds bounds(const LiftedMatrix& entry, Eigen::Index first_residual) const;
 };
+
+/// `ComposedBody<D>::of`
+Expected<Composed> leaf_of(PreparedBody body, const AnyMap& map);
+/// `ComposedBody<D>::sum_of` and its like. Requires a kind other than a leaf.
+Expected<Composed> composed_of(ComposedKind kind, std::vector<Composed> parts);
 
 }  // namespace pd::dimension::detail

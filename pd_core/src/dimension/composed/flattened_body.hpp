@@ -8,8 +8,8 @@
 /// what is allowed, the parts are grown finer: a thin intersection of large parts takes many facets of theirs.
 #pragma once
 
+#include "dimension/composed/composed_node.hpp"
 #include "pd/dimension/approximate_body.hpp"
-#include "pd/dimension/composed_body.hpp"
 
 namespace pd::dimension::detail {
 
@@ -22,8 +22,6 @@ namespace pd::dimension::detail {
 /// @return bad_value where an intersection is empty, or ("epsilon") where the structures inside are too coarse;
 /// not_full_dimensional where an intersection is too thin, or empty, for doubles to tell; limit_exceeded where it is so
 /// thin beside its parts that they take more than 200,000 vertices.
-template <int D>
-[[nodiscard]] Expected<ComposedBody<D>> without_intersections(const ComposedBody<D>& body, Side side, double growth,
-                                                              double later);
+[[nodiscard]] Expected<Composed> without_intersections(const Composed& body, Side side, double growth, double later);
 
 }  // namespace pd::dimension::detail

@@ -20,9 +20,8 @@ inline constexpr double kRoom = 1e-9;
 
 /// The largest epsilon of K's structures at which a polytope can be grown until it holds K / (1 + growth).
 /// @param ratio  of the frame, as `GrowingSum` tells
-template <int D>
-[[nodiscard]] double allowed_error(const ComposedBody<D>& body, double ratio, double growth) {
-  return body.node().radial ? growth / 2 : growth / (4 * (1 + ratio));
+[[nodiscard]] inline double allowed_error(const ComposedNode& body, double ratio, double growth) {
+  return body.radial ? growth / 2 : growth / (4 * (1 + ratio));
 }
 
 /// A growth may take so many operations: a facet counts as one, and so do a thousand products of K's structures. They
@@ -37,13 +36,13 @@ enum class Growth {
 };
 
 /// Grows a polytope inside K until it holds K shrunk by `limit`.
-template <int D>
 class GrowingSum {
  public:
-  explicit GrowingSum(const ComposedBody<D>& sum) : sum_(sum), hull_(0.5) {
-    const EllipsoidBounds bounds = sum.node().bounds(Matrix<D>::Identity(), 0);
-    frame_ = Sandwich<D>{bounds.center, bounds.inner}.fattening();
-    ratio_ = (frame_.linear * Matrix<D>(bounds.outer)).norm();
+  explicit GrowingSum(Composed sum) : sum_(std::move(sum)), hull_(sum_->dimension, 0.5) {
+    const int d = sum_->dimension;
+    const EllipsoidBounds bounds = sum_->bounds(LiftedMatrix::Identity(d, d), 0);
+    frame_ = AnySandwich{bounds.center, bounds.inner}.fattening();
+    ratio_ = (frame_.linear * AnyMatrix(bounds.outer)).norm();
   }
 
   /// How far K reaches in the frame, in which it holds the unit ball.
@@ -60,8 +59,8 @@ class GrowingSum {
       if (!hull_.alive(next.facet)) continue;
       if (certify(next) <= limit) continue;
       const std::size_t before = hull_.facets().size();
-      const double nearer = joggle<D>(static_cast<std::int64_t>(hull_.vertices().size()), limit);
-      const Vector<D> point = (1 - nearer) * next.support;
+      const double nearer = joggle(hull_.dimension(), static_cast<std::int64_t>(hull_.vertices().size()), limit);
+      const AnyVector point = (1 - nearer) * next.support;
       if (!hull_.insert(point, next.facet)) return Growth::rounding;
       enter_facets(before);
     }
@@ -70,8 +69,8 @@ class GrowingSum {
 
   /// K shrunk by this factor lies inside: the limit, or more if the budget ended first.
   [[nodiscard]] double reached() const { return reached_; }
-  [[nodiscard]] const RadialHull<D>& hull() const { return hull_; }
-  [[nodiscard]] const AffineMap<D>& frame() const { return frame_; }
+  [[nodiscard]] const RadialHull& hull() const { return hull_; }
+  [[nodiscard]] const AnyMap& frame() const { return frame_; }
   /// Bounds h_K over a living facet's normal, whose plane is at 1.
   [[nodiscard]] double upper(std::int32_t facet) const { return upper_[static_cast<std::size_t>(facet)]; }
   [[nodiscard]] const QueryCounters& counters() const { return counters_; }
@@ -81,7 +80,7 @@ class GrowingSum {
   struct Waiting {
     double height;
     std::int32_t facet;
-    Vector<D> support;
+    AnyVector support;
     friend bool operator<(const Waiting& a, const Waiting& b) {
       return a.height != b.height ? a.height < b.height : a.facet > b.facet;
     }
@@ -100,9 +99,9 @@ class GrowingSum {
     return Growth::spent;
   }
 
-  Vector<D> support(const Vector<D>& normal) {
+  AnyVector support(const AnyVector& normal) {
     ++supports_;
-    return frame_.apply(sum_.support(frame_.pull_back(normal), counters_).point);
+    return frame_.apply(sum_->support(frame_.pull_back(normal), counters_).point);
   }
 
   void enter_facets(std::size_t from) {
@@ -110,8 +109,8 @@ class GrowingSum {
     for (std::size_t f = from; f < hull_.facets().size(); ++f) {
       const auto id = static_cast<std::int32_t>(f);
       if (!hull_.alive(id)) continue;
-      const Vector<D> normal = hull_.facets()[f].normal;
-      const Vector<D> p = support(normal);
+      const AnyVector normal = hull_.normal(id);
+      const AnyVector p = support(normal);
       waiting_.push_back({normal.dot(p), id, p});
       std::push_heap(waiting_.begin(), waiting_.end());
     }
@@ -119,22 +118,22 @@ class GrowingSum {
 
   /// An upper bound of h_K over the facet's normal.
   double certify(const Waiting& facet) {
-    const double error = sum_.epsilon();
+    const double error = sum_->epsilon;
     double bound = facet.height;
-    if (sum_.node().radial) {
+    if (sum_->radial) {
       bound /= 1 - error;
     } else if (error > 0) {
-      const Vector<D> normal = hull_.facets()[static_cast<std::size_t>(facet.facet)].normal;
+      const AnyVector normal = hull_.normal(facet.facet);
       bound += error / (1 - error) * (facet.height + (-normal).dot(support(-normal)));
     }
     return upper_[static_cast<std::size_t>(facet.facet)] = std::max(bound, 1.0) * (1 + kRoom);
   }
 
-  const ComposedBody<D>& sum_;
-  AffineMap<D> frame_;
+  Composed sum_;
+  AnyMap frame_;
   double ratio_ = 1;
   double reached_ = 1;
-  RadialHull<D> hull_;
+  RadialHull hull_;
   std::vector<Waiting> waiting_;  ///< a heap
   std::vector<double> upper_;     ///< per facet, once certified
   QueryCounters counters_;
