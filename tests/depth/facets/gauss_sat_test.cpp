@@ -106,7 +106,14 @@ struct KernelInput {
     a.growth = -turned.of_a.col(0).dot(s.pose_a.rotation().col(0));
     b.growth = turned.of_b.col(0).dot(s.pose_b.rotation().col(0));
     for (int i = 0; i < 3; ++i) offset[i] = difference.offset()[i];
-    errors = {difference.reach(), 0x1p-19 * difference.reach(), 0, 0, 0, 0, 0};
+    errors = {.reach = difference.reach(),
+              .height = 0x1p-19 * difference.reach(),
+              .side_a = 0,
+              .side_b = 0,
+              .fine_side_a = 0,
+              .fine_side_b = 0,
+              .upper = std::numeric_limits<double>::infinity(),
+              .room = 0};
   }
   NearestByGaussMaps nearest(NearGaussPieces* near, ThinPairs& thin) const {
     return nearest_by_gauss_maps(a, b, offset, errors, near, thin);
@@ -164,7 +171,7 @@ TEST_P(SolidsOfFewFacets, TheKernelFindsTheLeastHeightOfAllCandidates) {
   for (int i = 0; i < (is_middle(GetParam()) ? 12 : 300); ++i) {
     SCOPED_TRACE(i);
     const Solids s = draw();
-    const KernelInput in(s);
+    KernelInput in(s);
     ThinPairs thin;
     const NearestByGaussMaps found = in.nearest(nullptr, thin);
     const double expected = least_height(s, in.difference);
@@ -182,6 +189,11 @@ TEST_P(SolidsOfFewFacets, TheKernelFindsTheLeastHeightOfAllCandidates) {
     if (thin.count > 0) continue;
     EXPECT_NEAR(std::sqrt(found.key), expected, 1e-13);
     by_edges += static_cast<int>(found.piece.is_of_edges());
+    // An upper bound changes what is looked at, not what is found.
+    in.errors.upper = expected + 1e-13;
+    const NearestByGaussMaps bounded = in.nearest(nullptr, thin);
+    EXPECT_EQ(bounded.key, found.key);
+    EXPECT_LE(least_bound(bounded, thin), expected + 1e-13);
   }
   EXPECT_GT(overlapping, is_middle(GetParam()) ? 8 : 60);
   if (!is_middle(GetParam())) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "depth/facets/gauss_foot.hpp"
 #include "numeric/unit_roundoff.hpp"
@@ -22,6 +23,9 @@ constexpr double kFineRiseError = 0x1p-46;
 constexpr double kHeightError = 0x1p-19;
 /// Of the reach: the rounding of a sliver's bound.
 constexpr double kRoom = 4 * kUnitRoundoff;
+
+/// Of the reach: more than facets of P and supports err by.
+constexpr double kBoundError = 0x1p-45;
 
 /// Of the reach: between two hulls of 32 vertices both ways take as long.
 constexpr double kCloseCentres = 0.25;
@@ -49,6 +53,17 @@ GaussSatBody body_of(const ConvexPolytope& polytope, const VertexArrays& posed, 
 Vec3 edge_between(const VertexArrays& v, const std::int8_t (&ends)[2]) {
   const int from = ends[0], to = ends[1];
   return {v.x[to] - v.x[from], v.y[to] - v.y[from], v.z[to] - v.z[from]};
+}
+
+/// The depth is no more than how far P reaches away from its centre. Small bodies keep few edges without that.
+double upper_bound(const PolytopeDifference& difference) {
+  if (has_small_gauss_map(difference.a()) && has_small_gauss_map(difference.b())) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const Vec3 back = -difference.centre();
+  const double length = back.norm();
+  if (!(length > 0)) return std::numeric_limits<double>::infinity();
+  return difference.support(back, nullptr).x.dot(back) / length + kBoundError * difference.reach();
 }
 
 /// A query once its kernel has answered.
@@ -150,6 +165,7 @@ GaussSatDepth gauss_sat_depth(const Pose& pose_a, const Pose& pose_b, const Poly
                               .side_b = static_cast<float>(kRiseError * radius_b),
                               .fine_side_a = kFineRiseError * radius_a,
                               .fine_side_b = kFineRiseError * radius_b,
+                              .upper = upper_bound(difference),
                               .room = std::max(kRoom * reach, 0.5 * width.length)};
   ThinPairs thin;
   const NearestByGaussMaps found = nearest_by_gauss_maps(

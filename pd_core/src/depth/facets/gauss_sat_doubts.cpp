@@ -10,30 +10,16 @@ struct PairVectors {
   LaneVectors normals[4];  ///< of the facets beside them
 };
 
-PD_INLINE void take_turned(LaneVectors& out, const GaussSatBody& body, const int (&facets)[kLanes]) {
-  for (int lane = 0; lane < kLanes; ++lane) {
-    const double* const n = body.storage.facet_normals[facets[lane]].data();
-    out.x[lane] = n[0];
-    out.y[lane] = n[1];
-    out.z[lane] = n[2];
-  }
-  const LaneVectors v = out;
-  const double(&m)[9] = body.turn;
-  out.x = v.x * m[0] + v.y * m[1] + v.z * m[2];
-  out.y = v.x * m[3] + v.y * m[4] + v.z * m[5];
-  out.z = v.x * m[6] + v.y * m[7] + v.z * m[8];
-}
-
-PD_INLINE void take_pairs(PairVectors& out, const ThinPairs& thin, int first, const GaussSatBody& a,
-                          const GaussSatBody& b) {
+PD_INLINE void take_pairs(PairVectors& out, const ThinPairs& thin, int first, const SliverBody& a,
+                          const SliverBody& b) {
   const ThinPair* of[kLanes];
   for (int lane = 0; lane < kLanes; ++lane) of[lane] = thin.pairs + (first + lane < thin.count ? first + lane : first);
   for (int k = 0; k < 2; ++k) {
     gather(out.ends[k], a.posed, of[0]->piece.a[k], of[1]->piece.a[k], of[2]->piece.a[k], of[3]->piece.a[k]);
     gather(out.ends[2 + k], b.posed, of[0]->piece.b[k], of[1]->piece.b[k], of[2]->piece.b[k], of[3]->piece.b[k]);
-    take_turned(out.normals[k], a, {of[0]->facets_a[k], of[1]->facets_a[k], of[2]->facets_a[k], of[3]->facets_a[k]});
-    take_turned(out.normals[2 + k], b,
-                {of[0]->facets_b[k], of[1]->facets_b[k], of[2]->facets_b[k], of[3]->facets_b[k]});
+    gather(out.normals[k], a.normals, of[0]->facets_a[k], of[1]->facets_a[k], of[2]->facets_a[k], of[3]->facets_a[k]);
+    gather(out.normals[2 + k], b.normals, of[0]->facets_b[k], of[1]->facets_b[k], of[2]->facets_b[k],
+           of[3]->facets_b[k]);
   }
 }
 
@@ -61,7 +47,7 @@ PD_INLINE void raise_by_all(Lanes& key, const PairVectors& of, const double (&of
 
 }  // namespace
 
-PD_CLONES double bound_thin_pairs(const GaussSatBody& a, const GaussSatBody& b, const double (&offset)[3], double level,
+PD_CLONES double bound_thin_pairs(const SliverBody& a, const SliverBody& b, const double (&offset)[3], double level,
                                   ThinPairs& thin) {
   double dropped = std::numeric_limits<double>::infinity();
   int count = 0;

@@ -158,7 +158,11 @@ PD_INLINE void nearest_of_all(NearestByGaussMaps& out, const GaussSatBody& a, co
     out.outcome = NearestByGaussMaps::Outcome::beyond;
     return;
   }
-  const double radius = __builtin_sqrt(out.key) + (near != nullptr ? near->band : 0);
+  // No facet beyond the upper bound is looked for.
+  const double upper_key = key_of(errors.upper, 1);
+  if (upper_key < out.others_key) out.others_key = upper_key;
+  const double nearest = __builtin_sqrt(out.key), bound = errors.upper < nearest ? errors.upper : nearest;
+  const double radius = bound + (near != nullptr ? near->band : 0);
   if (near != nullptr) tops_a = tops_b = {};
   if (!keep_near_edges(state.kept_a, a, state.planes_a, of_b, tops_a, radius, errors.height)) return;
   if (!keep_near_edges(state.kept_b, b, state.planes_b, of_a, tops_b, radius, errors.height)) return;
@@ -199,7 +203,8 @@ PD_INLINE void nearest_of_all(NearestByGaussMaps& out, const GaussSatBody& a, co
     out.outcome = NearestByGaussMaps::Outcome::full;
     return;
   }
-  const double dropped = bound_thin_pairs(a, b, offset, __builtin_sqrt(out.key) - errors.room, thin);
+  const double dropped = bound_thin_pairs({a.posed, state.planes_a.normals()}, {b.posed, state.planes_b.normals()},
+                                          offset, __builtin_sqrt(out.key) - errors.room, thin);
   if (near != nullptr && thin.unoriented < near->radius) near->radius = thin.unoriented;
   const double dropped_key = key_of(dropped, 1);
   out.others_key = dropped_key < out.others_key ? dropped_key : out.others_key;

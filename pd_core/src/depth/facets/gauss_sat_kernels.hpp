@@ -112,7 +112,8 @@ struct GaussSatErrors {
   float side_b;
   double fine_side_a;  ///< by double precision
   double fine_side_b;
-  double room;  ///< slivers no nearer than the winner less this are not listed
+  double upper;  ///< of the depth
+  double room;   ///< slivers no nearer than the winner less this are not listed
 };
 
 /// @param near  asks for the facets that are not much farther; nullptr where the nearest one is enough.

@@ -48,6 +48,7 @@ struct Planes {
   alignas(32) float top[Size::kFacets];       ///< of the other body along it
   int used;                                   ///< of kFloats; an even number
 
+  [[nodiscard]] PD_INLINE VertexArrays normals() const { return {nx, ny, nz, Size::kFacets}; }
   [[nodiscard]] PD_INLINE int blocks() const { return kIsSmall<Size> ? Size::kFacets / kFloats : used; }
 };
 
@@ -95,10 +96,15 @@ struct KernelState {
   KeptEdges<Size> kept_a, kept_b;
 };
 
+/// The turned vertices of -A or B, and the turned normals of its facets.
+struct SliverBody {
+  VertexArrays posed, normals;
+};
+
 /// Slivers lie above their lowest corner along any vector: bounds them by the one along which that is highest, of the
 /// normals beside their edges, the middles between those, and their own. Drops those that are `level` or farther.
 /// Returns the least bound of those that were dropped.
-double bound_thin_pairs(const GaussSatBody& a, const GaussSatBody& b, const double (&offset)[3], double level,
+double bound_thin_pairs(const SliverBody& a, const SliverBody& b, const double (&offset)[3], double level,
                         ThinPairs& thin);
 
 }  // namespace pd::detail::gauss_sat
