@@ -110,19 +110,13 @@ std::array<btVector3, 4> local_on_a(const btTransform& pose_a, const FreshPoints
   return local;
 }
 
+}  // namespace
+
 void set_fresh_point(const btVector3& normal, const ContactPoint& point, FreshPoint& out) {
   out.normal = normal;
   out.point_on_b = to_bullet(point.position_b);
   out.distance = static_cast<btScalar>(-point.depth);
   out.feature_id = point.feature_id;
-}
-
-}  // namespace
-
-FreshPoint fresh_point(const Vec3& normal, const ContactPoint& point) {
-  FreshPoint fresh;
-  set_fresh_point(to_bullet(normal), point, fresh);
-  return fresh;
 }
 
 void set_fresh_points(const ContactManifold& manifold, FreshPoints& out) {

@@ -43,7 +43,8 @@ std::array<int, 4> keep_points(FreshPoints& points, IsKept&& is_kept) {
   return before;
 }
 
-[[nodiscard]] FreshPoint fresh_point(const Vec3& normal, const ContactPoint& point);
+/// Sets all but the piece.
+void set_fresh_point(const btVector3& normal, const ContactPoint& point, FreshPoint& out);
 void set_fresh_points(const ContactManifold& manifold, FreshPoints& out);
 
 /// Of the pieces that a point lies between, as Bullet counts parts and children: of both bodies of the pair's result.

@@ -100,8 +100,11 @@ void StepReach::leave_out_idle(FreshPoints& points) const {
 
 void StepReach::leave_out_idle(ContactManifold& points) const {
   if (all_) return;
+  const btVector3 normal = to_bullet(points.normal);
   const auto end = std::remove_if(points.points.begin(), points.points.begin() + points.count, [&](const auto& point) {
-    return !is_needed(fresh_point(points.normal, point), kNearOfPieces * threshold_, BT_LARGE_FLOAT);
+    FreshPoint fresh;
+    set_fresh_point(normal, point, fresh);
+    return !is_needed(fresh, kNearOfPieces * threshold_, BT_LARGE_FLOAT);
   });
   points.count = static_cast<int>(end - points.points.begin());
 }

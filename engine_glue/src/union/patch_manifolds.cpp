@@ -15,7 +15,7 @@ FreshPoints fresh_points(const Patch& patch) {
   FreshPoints fresh;
   fresh.count = patch.count;
   for (std::size_t k = 0; k < static_cast<std::size_t>(patch.count); ++k) {
-    fresh.points[k] = fresh_point(patch.points[k].normal, patch.points[k].contact);
+    set_fresh_point(to_bullet(patch.points[k].normal), patch.points[k].contact, fresh.points[k]);
     fresh.points[k].piece = patch.points[k].piece;
   }
   return fresh;
