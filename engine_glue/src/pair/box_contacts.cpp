@@ -29,25 +29,22 @@ BoxInRows in_rows(const btConvexShape& box, const btTransform& transform) {
 
 }  // namespace
 
-BoxContact ask_boxes(const btConvexShape& a, const Pose& pose_a, const btConvexShape& b, const Pose& pose_b,
-                     double breaking_threshold, BoxWitness witness) {
-  const Vec3 half_a = to_pd(sharp_half_extents(a)), half_b = to_pd(sharp_half_extents(b));
-  const double tolerance =
-      contact_tolerance(pose_a.translation(), pose_b.translation(), std::min(half_a.norm(), half_b.norm()));
-  return box_contact({half_a, &pose_a}, {half_b, &pose_b}, tolerance, breaking_threshold, witness);
-}
-
-bool box_contacts(const btConvexShape& a, const btTransform& transform_a, const btConvexShape& b,
-                  const btTransform& transform_b, double breaking_threshold, ThreadBuffers& held, FreshPoints& out) {
-  if (!in_range(transform_a) || !in_range(transform_b)) return false;
-  QueryMeter meter(held);
-  const BoxInRows box_a = in_rows(a, transform_a), box_b = in_rows(b, transform_b);
+BoxContact ask_boxes(const btConvexShape& a, const btTransform& pose_a, const btConvexShape& b,
+                     const btTransform& pose_b, double breaking_threshold, BoxWitness witness) {
+  const BoxInRows box_a = in_rows(a, pose_a), box_b = in_rows(b, pose_b);
   const auto squared_radius = [](const BoxInRows& box) {
     return Vec3(box.half_extents[0], box.half_extents[1], box.half_extents[2]).squaredNorm();
   };
   const double radius = std::sqrt(std::min(squared_radius(box_a), squared_radius(box_b)));
   const double tolerance = contact_tolerance(box_a.centre, box_b.centre, radius);
-  const BoxContact found = box_contact(box_a, box_b, tolerance, breaking_threshold, BoxWitness::left_out);
+  return box_contact(box_a, box_b, tolerance, breaking_threshold, witness);
+}
+
+bool box_contacts(const btConvexShape& a, const btTransform& pose_a, const btConvexShape& b, const btTransform& pose_b,
+                  double breaking_threshold, ThreadBuffers& held, FreshPoints& out) {
+  if (!in_range(pose_a) || !in_range(pose_b)) return false;
+  QueryMeter meter(held);
+  const BoxContact found = ask_boxes(a, pose_a, b, pose_b, breaking_threshold, BoxWitness::left_out);
   if (!found.answered) return false;
   held.counters.calls.add();
   meter.count(found.contact);

@@ -16,8 +16,8 @@ namespace pd::detail {
 }
 
 /// Both with their margins inside, to the tolerance of contacts. Requires `are_boxes` and poses in range.
-[[nodiscard]] BoxContact ask_boxes(const btConvexShape& a, const Pose& pose_a, const btConvexShape& b,
-                                   const Pose& pose_b, double breaking_threshold, BoxWitness witness);
+[[nodiscard]] BoxContact ask_boxes(const btConvexShape& a, const btTransform& pose_a, const btConvexShape& b,
+                                   const btTransform& pose_b, double breaking_threshold, BoxWitness witness);
 
 /// A whole pair. Requires `are_boxes`. Counted as one query where it answers.
 /// @return false: `SolverCore::contacts` has to be asked, which is rare (`BoxContact::answered`).

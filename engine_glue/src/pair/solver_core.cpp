@@ -112,7 +112,7 @@ SolverCore::Outcome SolverCore::contacts(const PairQuestion& question, double br
   if (placed != Outcome::answered) return placed;
   const BoxContact boxes =
       out.boxes && !question.boxes_asked
-          ? ask_boxes(question.a, out.a.pose, question.b, out.b.pose, breaking_threshold, BoxWitness::placed)
+          ? ask_boxes(question.a, question.pose_a, question.b, question.pose_b, breaking_threshold, BoxWitness::placed)
           : BoxContact();
   if (boxes.answered) {
     out.depth = depth_of(boxes);
