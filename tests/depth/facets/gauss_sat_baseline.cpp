@@ -5,5 +5,5 @@
 #endif
 #define nearest_by_gauss_maps nearest_by_gauss_maps_baseline
 #define bound_thin_pairs bound_thin_pairs_baseline
-#include "depth/facets/gauss_sat_doubts.cpp"
 #include "depth/facets/gauss_sat_kernels.cpp"
+#include "depth/facets/gauss_sat_slivers.cpp"

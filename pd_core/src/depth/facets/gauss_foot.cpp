@@ -10,14 +10,9 @@ namespace pd::detail {
 
 namespace {
 
-Vec3 turned_vertex(const VertexArrays& v, int i) { return {v.x[i], v.y[i], v.z[i]}; }
-
 std::optional<double> foot_inside_edges(const PolytopeDifference& difference, double height, NearFacets& piece) {
   // An edge of -A as a vector, and one of B.
-  const Vec3 e =
-      turned_vertex(difference.posed_a(), piece.edge_a[0]) - turned_vertex(difference.posed_a(), piece.edge_a[1]);
-  const Vec3 f =
-      turned_vertex(difference.posed_b(), piece.edge_b[1]) - turned_vertex(difference.posed_b(), piece.edge_b[0]);
+  const Vec3 e = -turned_edge(difference.posed_a(), piece.edge_a), f = turned_edge(difference.posed_b(), piece.edge_b);
   // corner - s e + t f = the projection
   const Vec3 gap = difference.vertex(piece.edge_a[0], piece.edge_b[0]).x - height * piece.normal;
   const Vec3 m = e.cross(f);

@@ -10,6 +10,12 @@
 
 namespace pd::detail {
 
+[[nodiscard]] inline Vec3 turned_vertex(const VertexArrays& v, int i) { return {v.x[i], v.y[i], v.z[i]}; }
+template <class Id>
+[[nodiscard]] Vec3 turned_edge(const VertexArrays& v, const Id (&ends)[2]) {
+  return turned_vertex(v, ends[1]) - turned_vertex(v, ends[0]);
+}
+
 /// How far inside of a piece the point below the origin lies; 0 on its border, and beyond it by rounding. Nothing where
 /// the piece does not hold that point.
 /// @param s      the support along the piece's unit normal, at `height` along it.

@@ -50,11 +50,6 @@ GaussSatBody body_of(const ConvexPolytope& polytope, const VertexArrays& posed, 
   return body;
 }
 
-Vec3 edge_between(const VertexArrays& v, const std::int8_t (&ends)[2]) {
-  const int from = ends[0], to = ends[1];
-  return {v.x[to] - v.x[from], v.y[to] - v.y[from], v.z[to] - v.z[from]};
-}
-
 /// The depth is no more than how far P reaches away from its centre. Small bodies keep few edges without that.
 double upper_bound(const PolytopeDifference& difference) {
   if (has_small_gauss_map(difference.a()) && has_small_gauss_map(difference.b())) {
@@ -98,8 +93,8 @@ class Certificate {
   /// The same of the product of its edges: each errs by 14u of its body's radius, the product by 4u.
   [[nodiscard]] double sine_of_own(const ThinPair& pair) const {
     if (!pair.oriented) return kFar;
-    const Vec3 e = -edge_between(difference_.posed_a(), pair.piece.a),
-               f = edge_between(difference_.posed_b(), pair.piece.b);
+    const Vec3 e = -turned_edge(difference_.posed_a(), pair.piece.a),
+               f = turned_edge(difference_.posed_b(), pair.piece.b);
     const Vec3 n = f.cross(e);
     const double length = n.norm();
     const double error =
@@ -122,7 +117,7 @@ TurnedNormals::TurnedNormals(const Pose& pose_a, const Pose& pose_b)
 Vec3 normal_of_piece(const GaussPiece& piece, const TurnedNormals& turned, const PolytopeDifference& difference) {
   if (piece.facet_a >= 0) return turned.of_a * difference.a().facet_normal(piece.facet_a);
   if (piece.facet_b >= 0) return turned.of_b * difference.b().facet_normal(piece.facet_b);
-  return edge_between(difference.posed_b(), piece.b).cross(-edge_between(difference.posed_a(), piece.a));
+  return turned_edge(difference.posed_b(), piece.b).cross(-turned_edge(difference.posed_a(), piece.a));
 }
 
 void name_piece(const GaussPiece& piece, const DifferenceVertex& s, NearFacets& out) {

@@ -164,8 +164,8 @@ PD_INLINE void nearest_of_all(NearestByGaussMaps& out, const GaussSatBody& a, co
   const double nearest = __builtin_sqrt(out.key), bound = errors.upper < nearest ? errors.upper : nearest;
   const double radius = bound + (near != nullptr ? near->band : 0);
   if (near != nullptr) tops_a = tops_b = {};
-  if (!keep_near_edges(state.kept_a, a, state.planes_a, of_b, tops_a, radius, errors.height)) return;
-  if (!keep_near_edges(state.kept_b, b, state.planes_b, of_a, tops_b, radius, errors.height)) return;
+  if (!keep_near_edges(state.kept_a, a, state.planes_a, of_b, b.posed.count, tops_a, radius, errors.height)) return;
+  if (!keep_near_edges(state.kept_b, b, state.planes_b, of_a, a.posed.count, tops_b, radius, errors.height)) return;
   if (near != nullptr) {
     near->radius = radius;
     list_near_facets(*near, true, a, state.planes_a, of_b, b.posed, errors.height);

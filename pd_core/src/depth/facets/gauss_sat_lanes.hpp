@@ -1,6 +1,6 @@
 /// @file
 /// What the two parts of the kernel for Gauss maps share: gauss_sat_kernels.cpp, which most pairs of bodies run alone,
-/// and gauss_sat_doubts.cpp for edges whose sides single precision leaves open and for slivers.
+/// and gauss_sat_slivers.cpp for slivers.
 ///
 /// Everything here becomes a part of the function that uses it (numeric/lanes.hpp).
 #pragma once

@@ -13,10 +13,8 @@
 namespace pd::detail::gauss_sat {
 
 inline constexpr double kNone = std::numeric_limits<double>::infinity();
-inline constexpr std::uint32_t kSign = 0x80000000U;
 
-/// Where the vertices of one body lie along the facets' normals of the other, in single precision; rows beyond the last
-/// vertex lie below all.
+/// Where the vertices of one body lie along the facets' normals of the other, in single precision.
 template <class Size>
 struct Heights {
   alignas(32) float row[Size::kVertices][Size::kFacets];
@@ -125,10 +123,6 @@ PD_INLINE void take_heights(Heights<Size>& heights, Planes<Size>& planes, const 
       }
     }
     __builtin_memcpy(planes.top + f, &top, sizeof(top));
-    const Floats none = Floats{} - std::numeric_limits<float>::max();
-    for (int v = other.count; v < Size::kVertices; ++v) {
-      for (int i = 0; i < 2; ++i) __builtin_memcpy(heights.row[v] + f + kFloats * i, &none, sizeof(none));
-    }
   }
 }
 
@@ -169,10 +163,9 @@ PD_INLINE double top_along(int f, const Planes<Size>& planes, const VertexArrays
   return greatest(top);
 }
 
-/// By facet: vertices of the other body as bits, the last one as the highest.
+/// By facet: vertices of the other body as bits.
 template <class Size>
 struct VertexSets {
-  static constexpr int kFirst = 32 - Size::kVertices;  ///< the bit of vertex 0
   alignas(32) std::uint32_t of[Size::kFacets];
 };
 
@@ -212,7 +205,7 @@ PD_INLINE void nearest_facet(Nearest& best, VertexSets<Size>& tops, const Planes
     const double far = as_far < top ? as_far : top;
     std::uint32_t highest = 0;
     for (int v = 0; v < other.count; v += kLanes) highest |= mask_of_four(heights[v / kLanes] >= far) << v;
-    tops.of[f] = highest << VertexSets<Size>::kFirst;
+    tops.of[f] = highest;
   }
 }
 
@@ -251,37 +244,30 @@ PD_INLINE void levels_of(Floats& out, const Planes<Size>& planes, int first, dou
   narrow(out, level);
 }
 
-PD_INLINE void take_sign(Bits& bits, const Floats& value) {
-  Bits sign;
-  __builtin_memcpy(&sign, &value, sizeof(sign));
-  bits = bits >> 1 | (sign & kSign);
-}
-
 /// The vertices of the other body that show a facet too far.
 /// @param tops  vertices that do so, too
 template <class Size>
-PD_INLINE void mark_far_facets(VertexSets<Size>& far, const Planes<Size>& planes, const Heights<Size>& other,
+PD_INLINE void mark_far_facets(VertexSets<Size>& far, const Planes<Size>& planes, const Heights<Size>& other, int count,
                                const VertexSets<Size>& tops, double radius, double slack) {
-  // Four chains of bits, as each waits for itself: two blocks of facets, and two halves of the vertices.
-  constexpr int kTogether = 2, kHalfway = Size::kVertices / 2;
+  // Two blocks together, as each waits for itself.
+  constexpr int kTogether = 2;
   for (int f = 0; f < kFloats * planes.blocks(); f += kTogether * kFloats) {
     Floats level[kTogether], height;
-    Bits first[kTogether] = {}, second[kTogether] = {};
+    Ids sets[kTogether] = {};
     for (int i = 0; i < kTogether; ++i) levels_of(level[i], planes, f + kFloats * i, radius, slack);
-    for (int v = 0; v < kHalfway; ++v) {
+    // The last vertex first, so that each ends at the bit of its number.
+    for (int v = count - 1; v >= 0; --v) {
       for (int i = 0; i < kTogether; ++i) {
         load(height, other.row[v] + f + kFloats * i);
-        take_sign(first[i], level[i] - height);
-        load(height, other.row[v + kHalfway] + f + kFloats * i);
-        take_sign(second[i], level[i] - height);
+        sets[i] = sets[i] + sets[i] - (height > level[i]);
       }
     }
     for (int i = 0; i < kTogether; ++i) {
-      Bits top;
+      Ids top;
       __builtin_memcpy(&top, tops.of + f + kFloats * i, sizeof(top));
-      const Bits all = first[i] >> kHalfway | second[i] | top;
-      __builtin_memcpy(far.of + f + kFloats * i, &all, sizeof(all));
+      sets[i] |= top;
     }
+    __builtin_memcpy(far.of + f, sets, sizeof(sets));
   }
 }
 
@@ -294,19 +280,20 @@ PD_INLINE void mark_far_facets(VertexSets<Size>& far, const Planes<Size>& planes
 ///              asked for
 template <class Size>
 PD_INLINE bool keep_near_edges(KeptEdges<Size>& out, const GaussSatBody& body, const Planes<Size>& planes,
-                               const Heights<Size>& other, const VertexSets<Size>& tops, double radius, double slack) {
+                               const Heights<Size>& other, int others, const VertexSets<Size>& tops, double radius,
+                               double slack) {
   VertexSets<Size> sets;
-  mark_far_facets(sets, planes, other, tops, radius, slack);
+  mark_far_facets(sets, planes, other, others, tops, radius, slack);
   const auto& far = sets.of;
   int count = 0;
   if constexpr (kIsSmall<Size>) {
     const SmallGaussMap& map = static_cast<const SmallBodyStorage&>(body.storage).gauss_map;
-    // The last byte of each word: eight vertices.
+    // The first byte of each word: eight vertices.
     typedef std::uint8_t WordBytes __attribute__((vector_size(32)));
-    static_assert(Size::kFacets == kBytes && VertexSets<Size>::kFirst == 24);
+    static_assert(Size::kFacets == kBytes && Size::kVertices == 8);
     WordBytes words[2];
     __builtin_memcpy(words, far, sizeof(words));
-    constexpr int k = std::endian::native == std::endian::little ? 3 : 0;
+    constexpr int k = std::endian::native == std::endian::little ? 0 : 3;
     const Bytes by_facet =
         __builtin_shufflevector(words[0], words[1], k, k + 4, k + 8, k + 12, k + 16, k + 20, k + 24, k + 28, k + 32,
                                 k + 36, k + 40, k + 44, k + 48, k + 52, k + 56, k + 60);

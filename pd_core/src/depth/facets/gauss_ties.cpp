@@ -91,7 +91,8 @@ class Ties {
   /// Bounds the lengths of a piece's sides over its least width.
   [[nodiscard]] double slenderness(const NearFacets& piece) const {
     if (piece.kind == NearFacetsBuffers::Kind::edges) {
-      const Vec3 e = edge(difference_.posed_a(), piece.edge_a), f = edge(difference_.posed_b(), piece.edge_b);
+      const Vec3 e = turned_edge(difference_.posed_a(), piece.edge_a),
+                 f = turned_edge(difference_.posed_b(), piece.edge_b);
       return difference_.reach() * std::max(e.norm(), f.norm()) / e.cross(f).norm();
     }
     const ConvexPolytope& body = piece.kind == NearFacetsBuffers::Kind::facet_of_a ? difference_.a() : difference_.b();
@@ -105,16 +106,12 @@ class Ties {
     }
     return 2 * body.radius() / shortest;
   }
-  static Vec3 vertex(const VertexArrays& of, int v) { return {of.x[v], of.y[v], of.z[v]}; }
-  static Vec3 edge(const VertexArrays& of, const std::int32_t (&ends)[2]) {
-    return vertex(of, ends[1]) - vertex(of, ends[0]);
-  }
   /// Visits vertices as far along a normal as `first`, up to rounding, until a visit returns true.
   template <class Visit>
   bool any_vertex(const VertexArrays& posed, int first, const Vec3& normal, Visit&& visit) const {
-    const double level = vertex(posed, first).dot(normal) - foot_rounding(difference_);
+    const double level = turned_vertex(posed, first).dot(normal) - foot_rounding(difference_);
     for (int v = 0; v < posed.count; ++v) {
-      if (vertex(posed, v).dot(normal) >= level && visit(v)) return true;
+      if (turned_vertex(posed, v).dot(normal) >= level && visit(v)) return true;
     }
     return false;
   }
@@ -123,15 +120,15 @@ class Ties {
   template <class Visit>
   bool any_edge(const ConvexPolytope& body, const VertexArrays& posed, const Edge& first, const Vec3& normal,
                 Visit&& visit) const {
-    const Vec3 along = vertex(posed, first[1]) - vertex(posed, first[0]);
-    const double level = vertex(posed, first[0]).dot(normal) - foot_rounding(difference_);
+    const Vec3 along = turned_vertex(posed, first[1]) - turned_vertex(posed, first[0]);
+    const double level = turned_vertex(posed, first[0]).dot(normal) - foot_rounding(difference_);
     return any_vertex(posed, first[0], normal, [&](int v) {
       const auto next = body.neighbours(v);
       return std::any_of(next.begin(), next.end(), [&](std::int32_t w) {
-        const Vec3 other = vertex(posed, w) - vertex(posed, v);
+        const Vec3 other = turned_vertex(posed, w) - turned_vertex(posed, v);
         const double cosine = other.dot(along), sine_squared = other.cross(along).squaredNorm();
         return cosine > 0 && sine_squared <= kSmallTurn * kSmallTurn * cosine * cosine &&
-               vertex(posed, w).dot(normal) >= level && visit(Edge{v, w});
+               turned_vertex(posed, w).dot(normal) >= level && visit(Edge{v, w});
       });
     });
   }
@@ -146,7 +143,8 @@ class Ties {
   /// body's radius each, and their product by 4u.
   [[nodiscard]] double normal_error(const NearFacets& piece) const {
     if (piece.kind != NearFacetsBuffers::Kind::edges) return 0x1p-46;
-    const Vec3 e = edge(difference_.posed_a(), piece.edge_a), f = edge(difference_.posed_b(), piece.edge_b);
+    const Vec3 e = turned_edge(difference_.posed_a(), piece.edge_a),
+               f = turned_edge(difference_.posed_b(), piece.edge_b);
     const double error =
         32 * kUnitRoundoff * (difference_.a().radius() * f.norm() + difference_.b().radius() * e.norm());
     const double length = e.cross(f).norm();
