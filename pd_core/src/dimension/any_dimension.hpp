@@ -10,6 +10,16 @@
 
 #include "pd/dimension/body.hpp"
 
+namespace pd::dimension {
+
+// Loops of fixed length stand behind these two, like behind those of one D.
+template <>
+Vector<kAnyDimension> AffineMap<kAnyDimension>::apply(const Vector<kAnyDimension>& point) const;
+template <>
+Vector<kAnyDimension> AffineMap<kAnyDimension>::pull_back(const Vector<kAnyDimension>& direction) const;
+
+}  // namespace pd::dimension
+
 namespace pd::dimension::detail {
 
 using AnyVector = Vector<kAnyDimension>;
@@ -21,7 +31,7 @@ using AnySupport = SupportPoint<kAnyDimension>;
 
 /// <a, b> of few coordinates, for which Eigen's loops over any size take long to begin. Two sums, since an addition
 /// waits for the one before.
-inline double dot(const double* a, const double* b, Eigen::Index size) {
+[[gnu::always_inline]] inline double dot(const double* a, const double* b, Eigen::Index size) {
   double even = 0, odd = 0;
   for (Eigen::Index k = 1; k < size; k += 2) {
     even += a[k - 1] * b[k - 1];
@@ -47,7 +57,7 @@ inline void add_outer(AnyMatrix& m, double scale, const AnyVector& v) {
 AnyVector in_frame(const AnyMatrix& linear, const AnyVector& centre, const double* point);
 
 /// v' m v, in such loops, too.
-double quadratic(const AnyMatrix& m, const AnyVector& v);
+double quadratic(const AnyMatrix& m, const double* v);
 
 inline AnyMap identity_map(int dimension) {
   return {AnyMatrix::Identity(dimension, dimension), AnyVector::Zero(dimension)};

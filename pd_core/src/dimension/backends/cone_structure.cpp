@@ -147,9 +147,9 @@ AnySupport ConeStructure::support(const AnyVector& direction, QueryCounters& cou
   const AnyVector unit = from_unit_.pull_back(direction);
   const std::int32_t top_node = graph_->extreme_node(unit, counters);
   const auto& node = graph_->nodes()[top_node];
-  AnySupport best{node.point, direction.dot(node.point), node.index};
+  AnySupport best{node.point, dot(direction.data(), node.point.data(), d), node.index};
   // Heights are compared in the frame, where the apex is the origin; a height above it of the best point, from below.
-  const double apex = direction.dot(from_unit_.translation);
+  const double apex = dot(direction.data(), from_unit_.translation.data(), d);
   const double size = direction.norm() * from_unit_.translation.norm() + unit.norm();
   const auto bar = [&] { return best.value - apex - kRoom * 1e-3 * size; };
   std::vector<std::uint64_t> seen(cones_.size() / 64 + 1, 0);
