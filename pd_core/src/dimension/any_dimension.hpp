@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <memory>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "pd/dimension/body.hpp"
@@ -42,6 +43,21 @@ using AnySupport = SupportPoint<kAnyDimension>;
 /// to += scale * from
 inline void add_scaled(double* to, double scale, const double* from, Eigen::Index size) {
   for (Eigen::Index k = 0; k < size; ++k) to[k] += scale * from[k];
+}
+
+/// Calls `f` with the dimension as a constant: for loops that run millions of times, which have a fixed length then.
+template <class Function>
+auto with_dimension(Eigen::Index dimension, const Function& f) {
+  switch (dimension) {
+    case 2:
+      return f(std::integral_constant<int, 2>());
+    case 3:
+      return f(std::integral_constant<int, 3>());
+    case 4:
+      return f(std::integral_constant<int, 4>());
+    default:
+      return f(std::integral_constant<int, 5>());
+  }
 }
 
 /// matrix * x of D x D and D numbers.

@@ -108,13 +108,15 @@ std::int32_t KernelStructure::climb(std::int32_t start, const AnyVector& unit_di
   std::int64_t steps = 1, products = 1;
   for (;;) {
     std::int32_t best = at;
-    for (std::int32_t l = first_link_[at]; l < first_link_[at + 1]; ++l) {
-      const double other = dot(unit_direction.data(), links_[l].unit.data(), unit_direction.size());
-      if (other > value) {
-        value = other;
-        best = links_[l].node;
+    with_dimension(unit_direction.size(), [&](auto d) {
+      for (std::int32_t l = first_link_[at]; l < first_link_[at + 1]; ++l) {
+        const double other = dot(unit_direction.data(), links_[l].unit.data(), d);
+        if (other > value) {
+          value = other;
+          best = links_[l].node;
+        }
       }
-    }
+    });
     products += first_link_[at + 1] - first_link_[at];
     if (best == at) break;
     at = best;

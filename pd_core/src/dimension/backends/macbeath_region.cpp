@@ -112,9 +112,11 @@ MacbeathRegion PolarBody::region(const AnyVector& v, double delta, std::span<con
   r.point = extreme(v);
   r.center = v * ((1 - delta) / v.dot(points_[r.point]));
   const auto slab = [&](std::int32_t p, AnyVector& to) {
-    const double* const from = points_[p].data();
-    const double height = 1 - dot(from, r.center.data(), r.center.size());
-    for (Eigen::Index k = 0; k < to.size(); ++k) to[k] = from[k] / height;
+    with_dimension(to.size(), [&](auto d) {
+      const double* const from = points_[p].data();
+      const double height = 1 - dot(from, r.center.data(), d);
+      for (int k = 0; k < d; ++k) to[k] = from[k] / height;
+    });
   };
   r.ellipsoid = ellipsoid_in(slab, candidates);
   return r;
@@ -127,8 +129,10 @@ MacbeathRegion PolarBody::answering_region(const AnyVector& v, double depth, dou
   const AnyVector& q = points_[r.point];
   r.center = v * ((1 - depth) / v.dot(q));
   const auto lead = [&](const AnyVector& p, AnyVector& to) {
-    for (Eigen::Index k = 0; k < to.size(); ++k) to[k] = q[k] - (1 - epsilon) * p[k];
-    return dot(to.data(), r.center.data(), to.size());
+    return with_dimension(to.size(), [&](auto d) {
+      for (int k = 0; k < d; ++k) to[k] = q[k] - (1 - epsilon) * p[k];
+      return dot(to.data(), r.center.data(), d);
+    });
   };
   const auto slab = [&](std::int32_t p, AnyVector& to) {
     double height = lead(points_[p], to);
