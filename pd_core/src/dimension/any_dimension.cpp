@@ -1,27 +1,6 @@
 #include "dimension/any_dimension.hpp"
 
-#include <type_traits>
-
 namespace pd::dimension::detail {
-
-namespace {
-
-/// Calls `f` with the dimension as a constant.
-template <class Function>
-auto with_dimension(Eigen::Index dimension, const Function& f) {
-  switch (dimension) {
-    case 2:
-      return f(std::integral_constant<int, 2>());
-    case 3:
-      return f(std::integral_constant<int, 3>());
-    case 4:
-      return f(std::integral_constant<int, 4>());
-    default:
-      return f(std::integral_constant<int, 5>());
-  }
-}
-
-}  // namespace
 
 AnyVector in_frame(const AnyMatrix& linear, const AnyVector& centre, const double* point) {
   AnyVector r(centre.size());
@@ -33,9 +12,9 @@ AnyVector in_frame(const AnyMatrix& linear, const AnyVector& centre, const doubl
   return r;
 }
 
-double quadratic(const AnyMatrix& m, const AnyVector& v) {
-  return with_dimension(v.size(), [&](auto d) {
-    const Vector<d> along = image<d>(m.data(), v.data());
+double quadratic(const AnyMatrix& m, const double* v) {
+  return with_dimension(m.rows(), [&](auto d) {
+    const Vector<d> along = image<d>(m.data(), v);
     double sum = 0;
     for (int k = 0; k < d; ++k) sum += along[k] * v[k];
     return sum;
@@ -43,3 +22,25 @@ double quadratic(const AnyMatrix& m, const AnyVector& v) {
 }
 
 }  // namespace pd::dimension::detail
+
+namespace pd::dimension {
+
+template <>
+Vector<kAnyDimension> AffineMap<kAnyDimension>::apply(const Vector<kAnyDimension>& point) const {
+  Vector<kAnyDimension> r(point.size());
+  detail::with_dimension(point.size(), [&](auto d) {
+    const Vector<d> linear_part = detail::image<d>(linear.data(), point.data());
+    for (int k = 0; k < d; ++k) r[k] = linear_part[k] + translation[k];
+  });
+  return r;
+}
+
+template <>
+Vector<kAnyDimension> AffineMap<kAnyDimension>::pull_back(const Vector<kAnyDimension>& direction) const {
+  const Eigen::Index d = direction.size();
+  Vector<kAnyDimension> r(d);
+  for (Eigen::Index k = 0; k < d; ++k) r[k] = detail::dot(&linear(0, k), direction.data(), d);
+  return r;
+}
+
+}  // namespace pd::dimension

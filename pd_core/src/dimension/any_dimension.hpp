@@ -6,9 +6,20 @@
 #include <algorithm>
 #include <memory>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "pd/dimension/body.hpp"
+
+namespace pd::dimension {
+
+// Loops of fixed length stand behind these two, like behind those of one D.
+template <>
+Vector<kAnyDimension> AffineMap<kAnyDimension>::apply(const Vector<kAnyDimension>& point) const;
+template <>
+Vector<kAnyDimension> AffineMap<kAnyDimension>::pull_back(const Vector<kAnyDimension>& direction) const;
+
+}  // namespace pd::dimension
 
 namespace pd::dimension::detail {
 
@@ -21,7 +32,7 @@ using AnySupport = SupportPoint<kAnyDimension>;
 
 /// <a, b> of few coordinates, for which Eigen's loops over any size take long to begin. Two sums, since an addition
 /// waits for the one before.
-inline double dot(const double* a, const double* b, Eigen::Index size) {
+[[gnu::always_inline]] inline double dot(const double* a, const double* b, Eigen::Index size) {
   double even = 0, odd = 0;
   for (Eigen::Index k = 1; k < size; k += 2) {
     even += a[k - 1] * b[k - 1];
@@ -32,6 +43,21 @@ inline double dot(const double* a, const double* b, Eigen::Index size) {
 /// to += scale * from
 inline void add_scaled(double* to, double scale, const double* from, Eigen::Index size) {
   for (Eigen::Index k = 0; k < size; ++k) to[k] += scale * from[k];
+}
+
+/// Calls `f` with the dimension as a constant: for loops that run millions of times, which have a fixed length then.
+template <class Function>
+auto with_dimension(Eigen::Index dimension, const Function& f) {
+  switch (dimension) {
+    case 2:
+      return f(std::integral_constant<int, 2>());
+    case 3:
+      return f(std::integral_constant<int, 3>());
+    case 4:
+      return f(std::integral_constant<int, 4>());
+    default:
+      return f(std::integral_constant<int, 5>());
+  }
 }
 
 /// matrix * x of D x D and D numbers.
@@ -47,7 +73,7 @@ inline void add_outer(AnyMatrix& m, double scale, const AnyVector& v) {
 AnyVector in_frame(const AnyMatrix& linear, const AnyVector& centre, const double* point);
 
 /// v' m v, in such loops, too.
-double quadratic(const AnyMatrix& m, const AnyVector& v);
+double quadratic(const AnyMatrix& m, const double* v);
 
 inline AnyMap identity_map(int dimension) {
   return {AnyMatrix::Identity(dimension, dimension), AnyVector::Zero(dimension)};

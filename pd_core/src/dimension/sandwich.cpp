@@ -50,7 +50,7 @@ FatteningMap<kAnyDimension> fatten(const std::vector<AnyBox>& boxes) {
     total = 0;
     std::vector<double> next;
     for (std::size_t i = 0; i < generators.size(); ++i) {
-      next.push_back(std::sqrt(detail::quadratic(inverse, generators[i])));
+      next.push_back(std::sqrt(detail::quadratic(inverse, generators[i].data())));
       // |v|_M <= h_Z(v) max (next / weight);  h_Z(v) <= sqrt(sum of weights) |v|_M.
       if (weights[i] > 0) lower = std::max(lower, next[i] / weights[i]);
       total += weights[i];

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "dimension/backends/kernel_structure.hpp"
@@ -133,12 +134,14 @@ void ConeStructure::fill_cones(const Points& points, const RadialHull& hull, con
 void ConeStructure::scan(const Cone& cone, const Cone& next, const AnyVector& direction, AnySupport& best,
                          QueryCounters& counters) const {
   counters.dot_products += next.first - cone.first;
-  for (std::int32_t i = cone.first; i < next.first; ++i) {
-    const double value = dot(direction.data(), points_[i].data(), direction.size());
-    if (value > best.value || (value == best.value && indices_[i] < best.index)) {
-      best = {points_[i], value, indices_[i]};
+  with_dimension(direction.size(), [&](auto d) {
+    for (std::int32_t i = cone.first; i < next.first; ++i) {
+      const double value = dot(direction.data(), points_[i].data(), d);
+      if (value > best.value || (value == best.value && indices_[i] < best.index)) {
+        best = {points_[i], value, indices_[i]};
+      }
     }
-  }
+  });
 }
 
 AnySupport ConeStructure::support(const AnyVector& direction, QueryCounters& counters) const {
@@ -147,9 +150,9 @@ AnySupport ConeStructure::support(const AnyVector& direction, QueryCounters& cou
   const AnyVector unit = from_unit_.pull_back(direction);
   const std::int32_t top_node = graph_->extreme_node(unit, counters);
   const auto& node = graph_->nodes()[top_node];
-  AnySupport best{node.point, direction.dot(node.point), node.index};
+  AnySupport best{node.point, dot(direction.data(), node.point.data(), d), node.index};
   // Heights are compared in the frame, where the apex is the origin; a height above it of the best point, from below.
-  const double apex = direction.dot(from_unit_.translation);
+  const double apex = dot(direction.data(), from_unit_.translation.data(), d);
   const double size = direction.norm() * from_unit_.translation.norm() + unit.norm();
   const auto bar = [&] { return best.value - apex - kRoom * 1e-3 * size; };
   std::vector<std::uint64_t> seen(cones_.size() / 64 + 1, 0);
@@ -165,9 +168,13 @@ AnySupport ConeStructure::support(const AnyVector& direction, QueryCounters& cou
   std::int64_t visited = 0;
   for (std::size_t next = 0; next < open.size(); ++next) {
     const Cone& cone = cones_[open[next]];
-    const auto height = [&](int k) { return dot(unit.data(), graph_->nodes()[cone.vertex[k]].unit.data(), d); };
-    double top = height(0);
-    for (int k = 1; k < d; ++k) top = std::max(top, height(k));
+    const double top = with_dimension(d, [&](auto n) {
+      double most = -std::numeric_limits<double>::infinity();
+      for (int k = 0; k < n; ++k) {
+        most = std::max(most, dot(unit.data(), graph_->nodes()[cone.vertex[k]].unit.data(), n));
+      }
+      return most;
+    });
     counters.dot_products += d;
     ++visited;
     // Vertices above the bar over the largest gauge are connected in the hull's graph, so their cones are.

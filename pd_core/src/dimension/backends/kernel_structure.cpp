@@ -104,17 +104,19 @@ std::shared_ptr<const KernelStructure> KernelStructure::build(const AnyBody& bod
 std::int32_t KernelStructure::climb(std::int32_t start, const AnyVector& unit_direction,
                                     QueryCounters& counters) const {
   std::int32_t at = start;
-  double value = unit_direction.dot(nodes_[at].unit);
+  double value = dot(unit_direction.data(), nodes_[at].unit.data(), unit_direction.size());
   std::int64_t steps = 1, products = 1;
   for (;;) {
     std::int32_t best = at;
-    for (std::int32_t l = first_link_[at]; l < first_link_[at + 1]; ++l) {
-      const double other = dot(unit_direction.data(), links_[l].unit.data(), unit_direction.size());
-      if (other > value) {
-        value = other;
-        best = links_[l].node;
+    with_dimension(unit_direction.size(), [&](auto d) {
+      for (std::int32_t l = first_link_[at]; l < first_link_[at + 1]; ++l) {
+        const double other = dot(unit_direction.data(), links_[l].unit.data(), d);
+        if (other > value) {
+          value = other;
+          best = links_[l].node;
+        }
       }
-    }
+    });
     products += first_link_[at + 1] - first_link_[at];
     if (best == at) break;
     at = best;
@@ -130,7 +132,7 @@ AnySupport KernelStructure::support(const AnyVector& direction, QueryCounters& c
   ++counters.queries;
   const AnyVector unit = from_unit_.pull_back(direction);
   const Node& node = nodes_[extreme_node(unit, counters)];
-  AnySupport best{node.point, direction.dot(node.point), node.index};
+  AnySupport best{node.point, dot(direction.data(), node.point.data(), direction.size()), node.index};
   for (const Node& other : loose_) {
     const double value = direction.dot(other.point);
     if (value > best.value) best = {other.point, value, other.index};

@@ -53,9 +53,9 @@ class MacbeathHierarchy final : public WidthStructure {
           best = *i;
           break;
         }
-        const double along = shadow.axis.dot(v);
+        const double along = dot(shadow.axis.data(), v.data(), v.size());
         if (!(along > 0)) continue;
-        const double miss = -quadratic(shadow.form, v) / (along * along);
+        const double miss = -quadratic(shadow.form, v.data()) / (along * along);
         if (miss < least_miss) {
           least_miss = miss;
           best = *i;

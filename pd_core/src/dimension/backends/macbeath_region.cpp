@@ -43,10 +43,9 @@ std::int32_t PolarBody::extreme(const AnyVector& v) const {
 /// Khachiyan's ascent (see enclosing_ellipsoid.hpp).
 template <class Slab>
 AnyMatrix PolarBody::ellipsoid_in(const Slab& slab, std::span<const std::int32_t> candidates) const {
-  std::vector<AnyVector> slabs;
-  slabs.reserve(candidates.size());
-  for (const std::int32_t p : candidates) slabs.push_back(slab(p));
   const int d = dimension();
+  std::vector<AnyVector> slabs(candidates.size(), AnyVector::Zero(d));
+  for (std::size_t i = 0; i < slabs.size(); ++i) slab(candidates[i], slabs[i]);
   // The start: d points, each the farthest in a direction orthogonal to those before (Kumar and Yildirim).
   AnyMatrix moment = AnyMatrix::Zero(d, d);
   AnyMatrix basis = AnyMatrix::Zero(d, d);
@@ -56,15 +55,17 @@ AnyMatrix PolarBody::ellipsoid_in(const Slab& slab, std::span<const std::int32_t
       const AnyVector rest = AnyVector::Unit(d, i) - basis * basis.row(i).transpose();
       if (rest.squaredNorm() > direction.squaredNorm()) direction = rest;
     }
-    AnyVector far = AnyVector::Zero(d);
+    std::size_t farthest = 0;
     double most = -1;
-    for (const AnyVector& a : slabs) {
-      const double at = std::abs(dot(a.data(), direction.data(), d));
+    for (std::size_t i = 0; i < slabs.size(); ++i) {
+      const double at = std::abs(dot(slabs[i].data(), direction.data(), d));
       if (at > most) {
         most = at;
-        far = a;
+        farthest = i;
       }
     }
+    AnyVector far = AnyVector::Zero(d);
+    if (!slabs.empty()) far = slabs[farthest];
     add_outer(moment, 1.0 / d, far);
     AnyVector rest = far - basis * (basis.transpose() * far);
     rest -= basis * (basis.transpose() * rest);
@@ -77,7 +78,7 @@ AnyMatrix PolarBody::ellipsoid_in(const Slab& slab, std::span<const std::int32_t
     double most = 0;
     std::size_t far = 0;
     for (std::size_t i = 0; i < slabs.size(); ++i) {
-      values[i] = quadratic(inverse, slabs[i]);
+      values[i] = quadratic(inverse, slabs[i].data());
       if (values[i] > most) {
         most = values[i];
         far = i;
@@ -98,9 +99,10 @@ AnyMatrix PolarBody::ellipsoid_in(const Slab& slab, std::span<const std::int32_t
     slabs.resize(kept);
   }
   double most = 0;  // whatever the weights: E = {z : z' moment z <= 1 / most} lies in every slab
+  AnyVector a(d);
   for (std::size_t p = 0; p < points_.size(); ++p) {
-    const AnyVector a = slab(static_cast<std::int32_t>(p));
-    most = std::max(most, quadratic(inverse, a));
+    slab(static_cast<std::int32_t>(p), a);
+    most = std::max(most, quadratic(inverse, a.data()));
   }
   return moment * most;
 }
@@ -109,7 +111,13 @@ MacbeathRegion PolarBody::region(const AnyVector& v, double delta, std::span<con
   MacbeathRegion r;
   r.point = extreme(v);
   r.center = v * ((1 - delta) / v.dot(points_[r.point]));
-  const auto slab = [&](std::int32_t p) -> AnyVector { return points_[p] / (1 - points_[p].dot(r.center)); };
+  const auto slab = [&](std::int32_t p, AnyVector& to) {
+    with_dimension(to.size(), [&](auto d) {
+      const double* const from = points_[p].data();
+      const double height = 1 - dot(from, r.center.data(), d);
+      for (int k = 0; k < d; ++k) to[k] = from[k] / height;
+    });
+  };
   r.ellipsoid = ellipsoid_in(slab, candidates);
   return r;
 }
@@ -120,23 +128,31 @@ MacbeathRegion PolarBody::answering_region(const AnyVector& v, double depth, dou
   r.point = extreme(v);
   const AnyVector& q = points_[r.point];
   r.center = v * ((1 - depth) / v.dot(q));
-  const auto lead = [&](const AnyVector& p) -> AnyVector { return q - (1 - epsilon) * p; };
-  const auto slab = [&](std::int32_t p) -> AnyVector {
-    if (p == r.point) return q / depth;
-    const AnyVector w = lead(points_[p]);
-    return w / w.dot(r.center);
+  const auto lead = [&](const AnyVector& p, AnyVector& to) {
+    return with_dimension(to.size(), [&](auto d) {
+      for (int k = 0; k < d; ++k) to[k] = q[k] - (1 - epsilon) * p[k];
+      return dot(to.data(), r.center.data(), d);
+    });
+  };
+  const auto slab = [&](std::int32_t p, AnyVector& to) {
+    double height = lead(points_[p], to);
+    if (p == r.point) {
+      to = q;
+      height = depth;
+    }
+    for (double& number : to) number /= height;
   };
   r.ellipsoid = ellipsoid_in(slab, candidates);
   // Over x + {z : z' A z <= c^2}, and so over its shadow, <w, y> >= 0 where <w, x>^2 >= c^2 w' A^-1 w.
   const AnyMatrix inverse = inverse_of<kAnyDimension>(r.ellipsoid);
   double scale_squared = std::numeric_limits<double>::infinity();
+  AnyVector w(v.size());
   for (const AnyVector& p : points_) {
-    const AnyVector w = lead(p);
-    const double height = w.dot(r.center);
-    scale_squared = std::min(scale_squared, height * height / quadratic(inverse, w));
+    const double height = lead(p, w);
+    scale_squared = std::min(scale_squared, height * height / quadratic(inverse, w.data()));
   }
-  constexpr double kRoom = 1e-9;
-  r.ellipsoid /= scale_squared * (1 - kRoom);
+  constexpr double kRounding = 1e-9;
+  r.ellipsoid /= scale_squared * (1 - kRounding);
   return r;
 }
 
@@ -149,9 +165,9 @@ std::vector<std::int32_t> PolarBody::neighbours(const MacbeathRegion& region,
   const double depth = region.center.dot(points_[region.point]);  // 1 - delta
   std::vector<std::int32_t> r;
   for (const std::int32_t p : candidates) {
-    const double along = points_[p].dot(region.center);
+    const double along = dot(points_[p].data(), region.center.data(), region.center.size());
     const double outwards = std::max(along, along / std::max(depth, 0.25));
-    if (outwards + reach * std::sqrt(quadratic(inverse, points_[p])) >= 1) r.push_back(p);
+    if (outwards + reach * std::sqrt(quadratic(inverse, points_[p].data())) >= 1) r.push_back(p);
   }
   return r;
 }

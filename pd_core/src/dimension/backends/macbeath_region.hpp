@@ -28,7 +28,7 @@ struct ShadowCone {
   bool everything = false;
 
   [[nodiscard]] bool contains(const AnyVector& v) const {
-    return everything || (dot(axis.data(), v.data(), v.size()) > 0 && quadratic(form, v) >= 0);
+    return everything || (dot(axis.data(), v.data(), v.size()) > 0 && quadratic(form, v.data()) >= 0);
   }
 };
 

@@ -19,7 +19,7 @@ double ComposedNode::support(const AnyVector& v, const double* u, AnyVector& val
   switch (kind) {
     case ComposedKind::leaf:
       value = map.apply(body.structure->support(map.pull_back(v), counters).point);
-      return v.dot(value);
+      return dot(v.data(), value.data(), v.size());
     case ComposedKind::sum: {
       value.setZero(dimension);
       double reach = 0;
