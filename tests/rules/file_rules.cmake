@@ -71,8 +71,7 @@ endfunction()
 # In the order in which one unit would hold them.
 list(SORT files)
 foreach(file ${files})
-  # What is compiled for several dimensions stays alone (pd_core/CMakeLists.txt).
-  if(file MATCHES "^(pd_core/src|engine_glue/([a-z]+/)?src|render/src|demos)/.*\\.(cpp|hpp)$" AND NOT file MATCHES "^pd_core/src/dimension/")
+  if(file MATCHES "^(pd_core/src|engine_glue/([a-z]+/)?src|render/src|demos)/.*\\.(cpp|hpp)$")
     get_filename_component(folder ${file} DIRECTORY)
     file(READ ${ROOT}/${file} text)
     string(REPLACE ";" " " text "${text}")
