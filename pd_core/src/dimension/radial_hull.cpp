@@ -13,7 +13,7 @@ namespace {
 /// where everything is within a constant, and far below the least epsilon of a kernel.
 constexpr double kVisible = 1e-12;
 /// lambda down to this counts as inside the cone.
-constexpr double kInside = -1e-12;
+constexpr double kLeastInside = -1e-12;
 
 /// Inverse by Gauss and Jordan with partial pivots, written column by column; false for a singular matrix.
 bool invert(const AnyMatrix& matrix, double* r) {
@@ -106,7 +106,7 @@ std::int32_t RadialHull::walk(const double* point, std::int32_t start, std::int6
       k += (j - k) & (std::size_t{0} - static_cast<std::size_t>(lambda[j] < least));
       least = std::min(lambda[j], least);
     }
-    if (least >= kInside) return f;
+    if (least >= kLeastInside) return f;
     const std::int32_t next = facets_[f].neighbour[k];
     // On a ridge within rounding, each side sends the point to the other.
     if (next == previous && steps > 0) return least > previous_least ? f : previous;
