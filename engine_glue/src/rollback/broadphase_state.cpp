@@ -159,8 +159,8 @@ void BroadphaseState::restore_pairs(btCollisionWorld& world) const {
   btOverlappingPairCache* cache = world.getPairCache();
   btDispatcher* dispatcher = world.getDispatcher();
   btBroadphasePairArray& pairs = cache->getOverlappingPairArray();
-  // Taken out with their algorithms set aside, put back in the saved order. Those left over are freed by the proxies' numbers, for
-  // the order in which manifolds go is the order of those that stay, and addresses differ from run to run.
+  // Taken out with their algorithms set aside, put back in the saved order. Those left over are freed by the proxies'
+  // numbers, for the order in which manifolds go is the order of those that stay, and addresses differ from run to run.
   const auto numbers = [](const btBroadphaseProxy* a, const btBroadphaseProxy* b) {
     return std::pair(a->m_uniqueId, b->m_uniqueId);
   };
