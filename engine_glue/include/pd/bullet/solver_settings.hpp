@@ -13,10 +13,9 @@ namespace pd {
 ///   a fixed axis only, and nothing resists drift across it or a turn.
 /// - `m_solverMode |= SOLVER_INTERLEAVE_CONTACT_AND_FRICTION_CONSTRAINTS` [all contacts, then all friction]: each
 ///   point's friction follows its normal impulse at once. Stacks sway less with it.
-/// - `m_leastSquaresResidualThreshold` = 1e-14 [0], unless it is larger: the sweeps end after one that changes the
-/// speed
-///   of no contact by more than 1e-7 (in the world's unit of length, a second). Ten metres above the origin, a place in
-///   single precision is known to 1e-6. A body that stands or slides by itself takes half of the sweeps, and a tall
+/// - `m_leastSquaresResidualThreshold` = 1e-14 [0], unless it is larger: the sweeps end after one that changes no
+///   contact's speed by more than 1e-7 (in the world's unit of length, a second). Ten metres above the origin, a place
+///   in single precision is known to 1e-6. A body that stands or slides by itself takes half of the sweeps, and a tall
 ///   stack takes all of them. Set the threshold to 0 if gravity is below 0.01.
 ///
 /// Where a stack has to stand still whatever its size, `StackSolver` (pd/bullet/stack_solver.hpp) solves it at once,
