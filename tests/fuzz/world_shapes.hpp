@@ -52,6 +52,10 @@ class WorldShapes {
 
   btScalar length() { return btScalar(1 + input_.choice(16)) / 8; }
   btScalar signed_length() { return btScalar(static_cast<std::int8_t>(input_.byte())) / 32; }
+  btVector3 scaling() {
+    const btScalar x = length(), y = length();
+    return {x, y, length()};
+  }
   btVector3 place() {
     const btScalar x = signed_length(), y = signed_length();
     return {x, y, signed_length()};
@@ -85,8 +89,10 @@ class WorldShapes {
         const std::array<btScalar, 2> radii{a, b};
         return keep<btMultiSphereShape>(centres.data(), radii.data(), 2);
       }
-      case 6:
-        return keep<btTriangleShape>(place(), place(), place());
+      case 6: {
+        const btVector3 p = place(), q = place();
+        return keep<btTriangleShape>(p, q, place());
+      }
       case 7: {
         auto* sum = keep<btMinkowskiSumShape>(keep<btBoxShape>(btVector3(a, a, b)), keep<btSphereShape>(b));
         return sum;
@@ -147,7 +153,7 @@ class WorldShapes {
       }
       case 1: {
         auto* mesh = keep<btBvhTriangleMeshShape>(keep_mesh()->array.get(), true);
-        return keep<btScaledBvhTriangleMeshShape>(mesh, btVector3(length(), length(), length()));
+        return keep<btScaledBvhTriangleMeshShape>(mesh, scaling());
       }
       default:
         return keep<btBvhTriangleMeshShape>(keep_mesh()->array.get(), input_.choice(2) == 0);

@@ -69,8 +69,7 @@ class Room {
  private:
   BulletSolverSettings settings() {
     BulletSolverSettings chosen;
-    const int bits = input_.byte();
-    chosen.one_sided_meshes = (bits & 1) != 0;
+    chosen.one_sided_meshes = input_.choice(2) == 1;
     return chosen;
   }
 
@@ -119,7 +118,7 @@ class Room {
     btCollisionShape* shape = object.getCollisionShape();
     switch (input_.choice(6)) {
       case 0:
-        shape->setLocalScaling(btVector3(shapes_.length(), shapes_.length(), shapes_.length()));
+        shape->setLocalScaling(shapes_.scaling());
         break;
       case 1:
         shape->setMargin(shapes_.length() / 8);
@@ -162,11 +161,11 @@ class Room {
   void join(btRigidBody& a, btRigidBody& b) {
     if (&a == &b || (a.getInvMass() == 0 && b.getInvMass() == 0)) return;
     std::unique_ptr<btTypedConstraint> joint;
+    const btVector3 in_a = shapes_.place(), in_b = shapes_.place(), axis(0, 1, 0);
     if (input_.choice(2) == 0) {
-      joint = std::make_unique<btPoint2PointConstraint>(a, b, shapes_.place(), shapes_.place());
+      joint = std::make_unique<btPoint2PointConstraint>(a, b, in_a, in_b);
     } else {
-      joint = std::make_unique<btHingeConstraint>(a, b, shapes_.place(), shapes_.place(), btVector3(0, 1, 0),
-                                                  btVector3(0, 1, 0));
+      joint = std::make_unique<btHingeConstraint>(a, b, in_a, in_b, axis, axis);
     }
     world_->addConstraint(joint.get(), input_.choice(2) == 0);
     joints_.push_back(std::move(joint));
