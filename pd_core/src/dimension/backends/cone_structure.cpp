@@ -97,13 +97,13 @@ void ConeStructure::fill_cones(const Points& points, const RadialHull& hull, con
   const double near = hull.inner_radius() * (1 - kRoom);
   std::vector<std::int32_t> cone_of_point(points.size(), -1);
   DirectionCells cells(hull.dimension(), 4 * static_cast<double>(cones_.size()));
-  std::vector<std::int32_t> hints(cells.size(), 0);
+  std::vector<std::int32_t> hints(static_cast<std::size_t>(cells.size()), 0);
   const AnyVector centre = from_unit_.translation;
   std::int64_t visited = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const AnyVector unit = in_frame(to_unit.linear, centre, points.data(i));
     if (unit.squaredNorm() <= near * near) continue;
-    std::int32_t& hint = hints[cells.cell(unit)];
+    std::int32_t& hint = hints[static_cast<std::size_t>(cells.cell(unit))];
     hint = hull.locate(unit, hint, visited);
     const double gauge = hull.gauge(hint, unit);
     if (gauge <= 1 - kRoom) continue;

@@ -35,7 +35,7 @@ class KernelStructure : public WidthStructure {
   [[nodiscard]] const std::vector<Node>& nodes() const { return nodes_; }
   /// A node that no neighbour is beyond, for a direction of the frame.
   std::int32_t extreme_node(const AnyVector& unit_direction, QueryCounters& counters) const {
-    return climb(starts_[cells_.cell(unit_direction)], unit_direction, counters);
+    return climb(starts_[static_cast<std::size_t>(cells_.cell(unit_direction))], unit_direction, counters);
   }
 
  private:
