@@ -122,7 +122,7 @@ bool replace_lasting_points(const PointsOfStep& step, const LastingPoints& lasti
   const FourVectors normal = gather({&points[0]->normal, &points[1]->normal, &points[2]->normal, &points[3]->normal});
   const FourVectors world_a = world_b + scaled(normal, Lanes{points[0]->distance, points[1]->distance,
                                                              points[2]->distance, points[3]->distance});
-  // What is stored here is loaded at the end, when no store of it is still on its way.
+  // The end loads what is stored here. By then no store of it is still on its way.
   const btManifoldPoint pattern = pattern_of(result, *entries.at[0], points[0]->normal);
   const FourVectors old_a = entries.gather(&btManifoldPoint::m_localPointA);
   const FourVectors old_b = entries.gather(&btManifoldPoint::m_localPointB);

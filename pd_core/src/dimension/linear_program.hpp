@@ -19,7 +19,7 @@
 
 namespace pd::dimension::detail {
 
-/// As many numbers as the program has variables.
+/// Holds a number for each variable of a program, and leaves the rest unused.
 template <typename Scalar>
 using ProgramVector = std::array<Scalar, kMaxDimension>;
 

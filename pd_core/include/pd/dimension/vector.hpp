@@ -11,9 +11,11 @@ namespace pd::dimension {
 
 inline constexpr int kMinDimension = 2;
 inline constexpr int kMaxDimension = 5;
-/// In place of D: known at run time. The sources compute with such vectors and matrices, which are never on the heap,
-/// so that they are compiled once and not for each D.
+/// This value of D means that the dimension is known at run time. The sources of the module compute with such vectors
+/// and matrices, so that they are compiled once and not for each D. They hold kMaxDimension numbers a column, never on
+/// the heap.
 inline constexpr int kAnyDimension = Eigen::Dynamic;
+/// The rows of a vector that is made without a size: D, or none where the dimension is known at run time only.
 template <int D>
 inline constexpr int kInitialSize = D == kAnyDimension ? 0 : D;
 

@@ -24,7 +24,7 @@ constexpr double kHeightError = 0x1p-19;
 /// Of the reach: the rounding of a sliver's bound.
 constexpr double kRoom = 4 * kUnitRoundoff;
 
-/// Of the reach: more than facets of P and supports err by.
+/// A share of the reach. Facets of P and supports err by less.
 constexpr double kBoundError = 0x1p-45;
 
 /// Of the reach: between two hulls of 32 vertices both ways take as long.

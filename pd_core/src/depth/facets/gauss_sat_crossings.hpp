@@ -18,7 +18,7 @@ template <class Size>
 inline constexpr int kWords = kIsSmall<Size> ? 1 : 2;
 inline constexpr int kWordBits = 32;
 
-/// By facet of one body: the kept edges of the other that may fall along it, and those that may rise.
+/// Sets of the other body's kept edges, by facet of one body: those that may fall along it, and those that may rise.
 template <class Size>
 struct Sides {
   alignas(32) std::uint32_t falling[kWords<Size>][Size::kFacets], rising[kWords<Size>][Size::kFacets];
@@ -50,8 +50,8 @@ PD_INLINE void tell_sides(Sides<Size>& out, const KeptEdges<Size>& kept, const H
   }
 }
 
-/// By kept edge of one body: the edges of the other that may fall along the facet to its left and rise along the one to
-/// its right, those that may rise and fall, and those of which a side is open.
+/// Sets of the other body's edges, by kept edge of one body: those that may fall along the facet to its left and rise
+/// along the one to its right, those that may rise and fall, and those of which a side is open.
 template <class Size>
 struct ArcSides {
   static constexpr int kPadded = (Size::kKept + kFloats - 1) / kFloats * kFloats;
@@ -168,7 +168,7 @@ struct RoughPairs {
   /// Square of a distance: no pair that is left out is nearer.
   [[nodiscard]] PD_INLINE double beyond() const { return static_cast<double>(level * kBelow) * unit; }
 
-  /// Of the pairs of B's edge j: those that may be as near.
+  /// Returns those pairs of B's edge j that may be as near.
   /// @param inwards, outwards  edges of A, by the side to which the product may point; `open` where that is in doubt
   PD_INLINE std::uint64_t near(int j, std::uint64_t inwards, std::uint64_t outwards, std::uint64_t open) {
     const std::uint64_t all = inwards | outwards;
@@ -204,7 +204,7 @@ struct RoughPairs {
   }
 };
 
-/// Whether the product of two edges, b x a, may point inwards, and outwards, told in double precision.
+/// Tells in double precision whether the product of two edges, b x a, may point inwards, and whether outwards.
 template <class Size>
 PD_INLINE void tell_pair(bool& inwards, bool& outwards, const GaussEdge& of_a, const GaussEdge& of_b,
                          const KernelState<Size>& state, const VertexArrays& a, const VertexArrays& b,

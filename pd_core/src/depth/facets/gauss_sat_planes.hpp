@@ -14,7 +14,7 @@ namespace pd::detail::gauss_sat {
 
 inline constexpr double kNone = std::numeric_limits<double>::infinity();
 
-/// Where the vertices of one body lie along the facets' normals of the other, in single precision.
+/// Holds how far the vertices of one body lie along the facets' normals of the other, in single precision.
 template <class Size>
 struct Heights {
   alignas(32) float row[Size::kVertices][Size::kFacets];
@@ -163,7 +163,7 @@ PD_INLINE double top_along(int f, const Planes<Size>& planes, const VertexArrays
   return greatest(top);
 }
 
-/// By facet: vertices of the other body as bits.
+/// Sets of the other body's vertices as bits, by facet.
 template <class Size>
 struct VertexSets {
   alignas(32) std::uint32_t of[Size::kFacets];

@@ -1,5 +1,5 @@
 /// @file
-/// What stands behind a `DirectionalWidth`, of a dimension known at run time.
+/// The structure behind a `DirectionalWidth` has a dimension that is known at run time.
 #pragma once
 
 #include <memory>
