@@ -18,6 +18,7 @@
 #include "pair/sheet_memory.hpp"
 #include "pair/standing_still.hpp"
 #include "pd/depth/warm_certificate.hpp"
+#include "pd/union_contact/parted_pieces.hpp"
 #include "shapes/cached_shape.hpp"
 
 class btPersistentManifold;
@@ -35,17 +36,9 @@ struct RememberedPoint {
 struct PieceMemory {
   std::uint64_t pieces = 0;  ///< both children's numbers, or the triangle's
   bool met = false;          ///< the last step was within reach of contacts
-  /// Of two children: as long as their ways (`ChildMotion`) come to less, they are farther apart than contacts reach.
-  double apart_until = 0;
+  PartedPieces parted;       ///< of two children
   WarmCertificate warm;
   std::array<std::shared_ptr<CachedShape>, 2> shapes;
-};
-
-/// Of a child of a compound: where it was last, and a bound of how far any of its points has come since it was met.
-struct ChildMotion {
-  std::shared_ptr<CachedShape> shape;
-  btTransform pose;
-  double way = 0;
 };
 
 /// A heavy body that a light one carries (world/heavy_loads.hpp).
@@ -66,19 +59,20 @@ class ManifoldOwner;
 
 /// Holds what the search for the points of a pair with a mesh or compound remembers.
 struct UnionPairMemory {
-  std::vector<PieceMemory> pieces;                   ///< sorted by number
-  std::array<std::vector<ChildMotion>, 2> children;  ///< of both bodies, at their number + 1
-  StandingStill standing;                            ///< of a body on a mesh
-  SheetMemory sheet;                                 ///< the same
+  std::vector<PieceMemory> pieces;  ///< sorted by number
+  /// What children of both bodies, at their number + 1, were converted to when they were last met.
+  std::array<std::vector<std::shared_ptr<CachedShape>>, 2> children;
+  StandingStill standing;         ///< of a body on a mesh
+  SheetMemory sheet;              ///< the same
   int union_pause = 0;            ///< steps for which the whole unions are not asked again (deep_union.hpp)
   int union_refusals = 0;         ///< in a row
   Vec3 union_way = Vec3::Zero();  ///< along which the unions were led out in the last step, zero: they were not
 
-  /// What a child of a body (0 or 1; -1: the body itself) was converted to when it was last met, or null.
+  /// That of one child of a body (0 or 1; -1: the body itself), or null.
   [[nodiscard]] std::shared_ptr<CachedShape>& shape_of_child(std::size_t body, int child) {
     const auto place = static_cast<std::size_t>(child + 1);
     if (place >= children[body].size()) children[body].resize(place + 1);
-    return children[body][place].shape;
+    return children[body][place];
   }
 };
 

@@ -78,11 +78,13 @@ class NearChildren final : public NearSides {
   Held a_, b_;
 };
 
-/// Whether two children cannot have come within reach of each other since they were last asked.
-/// @param way_and_reach  what both have come, and up to which gap there are contacts
-bool still_apart(const PieceMemory& memory, const ChildMotion& a, const ChildMotion& b, double way_and_reach) {
-  return way_and_reach < memory.apart_until * (1 - 0x1p-40) && memory.shapes[0] == a.shape &&
-         memory.shapes[1] == b.shape;
+/// Whether two children are proved to be still farther apart than a gap.
+bool still_apart(const PieceMemory& memory, const Child& a, const Child& b, double gap) {
+  if (!memory.parted.known()) return false;
+  const CachedShape& shape = *memory.shapes[0];
+  double radius = bounding_radius(*shape.body);
+  if (shape.sharp) radius = std::max(radius, bounding_radius(*shape.sharp));
+  return memory.parted.beyond(gap, to_pd(a.pose), to_pd(b.pose), radius);
 }
 
 /// Up to which gap the solver can need points of two children in this step: they lie within the threshold of both
@@ -108,13 +110,12 @@ class CompoundContacts final : public UnionContacts {
   }
 
  private:
-  /// Brings what is remembered of the near children of one body up to date.
-  static void move(const btCollisionShape& body, const std::vector<Child>& children, std::uint64_t stamp,
-                   SolverCore& core, ThreadBuffers& buffers, std::vector<ChildMotion>& motions);
+  /// Brings the shapes of the near children of the question's a (side 0) or b (1) up to date.
+  void find_shapes(std::size_t side, const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers,
+                   PairMemory& memory) const;
   /// One pair's points. @return false where a child has no exact form
-  /// @param way  of both children
   /// @param gap  up to which their points can be needed; `reach`: which of them are
-  bool ask(const ChildrenInResult& pair, const UnionQuestion& question, SolverCore& core, double way, double gap,
+  bool ask(const ChildrenInResult& pair, const UnionQuestion& question, SolverCore& core, double gap,
            const StepReach& reach, PieceMemory& memory, ThreadBuffers& buffers, Patches& patches);
   /// Where children are deep in each other, the whole's shortest way out in place of what they said against it.
   void leave_as_one(const UnionQuestion& question, SolverCore& core, PairMemory& memory, ThreadBuffers& buffers,
@@ -127,27 +128,16 @@ class CompoundContacts final : public UnionContacts {
   DeepUnion deep_;
 };
 
-void CompoundContacts::move(const btCollisionShape& body, const std::vector<Child>& children, std::uint64_t stamp,
-                            SolverCore& core, ThreadBuffers& buffers, std::vector<ChildMotion>& motions) {
-  for (const Child& child : children) {
-    const auto place = static_cast<std::size_t>(child.index + 1);
-    if (place >= motions.size()) motions.resize(place + 1);
-    ChildMotion& motion = motions[place];
-    const bool met = motion.shape != nullptr;
+void CompoundContacts::find_shapes(std::size_t side, const UnionQuestion& question, SolverCore& core,
+                                   ThreadBuffers& buffers, PairMemory& memory) const {
+  const btCollisionShape& body = *(side == 0 ? question.a : question.b).getCollisionShape();
+  for (const Child& child : side == 0 ? children_a_ : children_b_) {
+    std::shared_ptr<CachedShape>& shape = memory.shape_of_child(side, child.index);
     if (child.index < 0) {
-      core.find(static_cast<const btConvexShape&>(*child.shape), stamp, motion.shape, buffers);
+      core.find(static_cast<const btConvexShape&>(*child.shape), question.stamp, shape, buffers);
     } else {
-      const ChildOf asked{static_cast<const btCompoundShape&>(body), child.index};
-      motion.shape = buffers.near.facts().look_at(asked, core.cache);
+      shape = buffers.near.facts().look_at({static_cast<const btCompoundShape&>(body), child.index}, core.cache);
     }
-    const CachedShape& found = *motion.shape;
-    if (met && found.body) {
-      double radius = bounding_radius(*found.body);
-      if (found.sharp) radius = std::max(radius, bounding_radius(*found.sharp));
-      // Rounded up, so that the way that is left is no less than the way that was come.
-      motion.way = (motion.way + moved_at_most(motion.pose, child.pose, radius)) * (1 + 0x1p-52);
-    }
-    motion.pose = child.pose;
   }
 }
 
@@ -178,8 +168,8 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Thr
   }
   if (!all_convex(children_a_) || !all_convex(children_b_)) return false;
   buffers.near.begin_pair(stamp);
-  move(shape_a, children_a_, stamp, core, buffers, memory.children[0]);
-  move(shape_b, children_b_, stamp, core, buffers, memory.children[1]);
+  find_shapes(0, question, core, buffers, memory);
+  find_shapes(1, question, core, buffers, memory);
   const StepReach step_reach(result, threshold, static_cast<btScalar>(seconds));
   for (std::size_t i = 0; i < children_a_.size(); ++i) {
     const Child& child_a = children_a_[i];
@@ -195,15 +185,16 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Thr
       const std::uint64_t number = (static_cast<std::uint64_t>(static_cast<std::uint32_t>(child_a.index + 1)) << 32U) |
                                    static_cast<std::uint32_t>(child_b.index + 1);
       PieceMemory& remembered = memories_.take(memory.pieces, number);
-      const ChildMotion& motion_a = memory.children[0][static_cast<std::size_t>(child_a.index + 1)];
-      const ChildMotion& motion_b = memory.children[1][static_cast<std::size_t>(child_b.index + 1)];
-      const double way = motion_a.way + motion_b.way;
-      if (still_apart(remembered, motion_a, motion_b, way + static_cast<double>(gap))) continue;
+      const auto& shape_of_a = memory.shape_of_child(0, child_a.index);
+      const auto& shape_of_b = memory.shape_of_child(1, child_b.index);
+      if (remembered.shapes[0] != shape_of_a || remembered.shapes[1] != shape_of_b) {
+        remembered.shapes = {shape_of_a, shape_of_b};
+        remembered.parted.forget();
+      }
+      if (still_apart(remembered, child_a, child_b, static_cast<double>(gap))) continue;
       pairs_.emplace_back(static_cast<int>(i), static_cast<int>(j));
-      if (remembered.shapes[0] != motion_a.shape) remembered.shapes[0] = motion_a.shape;
-      if (remembered.shapes[1] != motion_b.shape) remembered.shapes[1] = motion_b.shape;
       const ChildrenInResult pair(result, a, child_a, b, child_b);
-      if (!ask(pair, question, core, way, static_cast<double>(gap), step_reach, remembered, buffers, patches)) {
+      if (!ask(pair, question, core, static_cast<double>(gap), step_reach, remembered, buffers, patches)) {
         return false;
       }
     }
@@ -252,9 +243,8 @@ void CompoundContacts::leave_as_one(const UnionQuestion& question, SolverCore& c
   patches.add(way.points, static_cast<int>(pair - pairs_.begin()), way.piece_a, way.piece_b);
 }
 
-bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& question, SolverCore& core, double way,
-                           double gap, const StepReach& reach, PieceMemory& memory, ThreadBuffers& buffers,
-                           Patches& patches) {
+bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& question, SolverCore& core, double gap,
+                           const StepReach& reach, PieceMemory& memory, ThreadBuffers& buffers, Patches& patches) {
   PairAnswer answer;
   const auto& shape_a = static_cast<const btConvexShape&>(*pair.a().getCollisionShape());
   const auto& shape_b = static_cast<const btConvexShape&>(*pair.b().getCollisionShape());
@@ -274,7 +264,8 @@ bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& qu
   if (outcome == SolverCore::Outcome::unsupported) return false;
   if (outcome != SolverCore::Outcome::answered) return true;
   memory.met = answer.depth.signed_distance() <= gap;
-  memory.apart_until = memory.met ? 0 : way + answer.depth.distance_lower;
+  memory.parted.forget();
+  if (!memory.met) memory.parted.note(answer.a.pose, answer.b.pose, answer.depth);
   reach.leave_out_idle(points);
   if (reach.against_fixed()) {
     FreshPoints fresh;

@@ -12,7 +12,7 @@ namespace pd {
 /// The memories that a step asks for take the place of last step's. All others are forgotten, so that there are never
 /// more than pieces met in one step.
 ///
-/// @tparam Memory  of two pieces, with their number (`pieces`), `met` and `apart_until`, which a step sets anew.
+/// @tparam Memory  of two pieces, with their number (`pieces`), `met` and `parted`, which a step sets anew.
 template <class Memory>
 class PieceMemories {
  public:
@@ -33,7 +33,7 @@ class PieceMemories {
       next_ = static_cast<std::size_t>(found - old.begin()) + 1;
       fresh_.push_back(std::move(*found));
       found->met = false;  // its number is still there for the search for the next
-      found->apart_until = 0;
+      found->parted.forget();
     } else {
       fresh_.emplace_back();
       fresh_.back().pieces = number;
