@@ -125,7 +125,7 @@ void meshes() {
   triangles.addTriangle(btVector3(-5, 0, -5), btVector3(-5, 0, 5), btVector3(5, 0, 5));
   triangles.addTriangle(btVector3(-5, 0, -5), btVector3(5, 0, 5), btVector3(5, 0, -5));
   // [mesh]
-  const pd::Expected<pd::MeshReport> report = pd::check_mesh(triangles);  // before Bullet builds its tree
+  const pd::Expected<pd::SurfaceReport> report = pd::check_mesh(triangles);  // before Bullet builds its tree
   if (!report) {
     std::fprintf(stderr, "the mesh is refused at %s\n", report.error().where.c_str());
     std::exit(1);
@@ -135,7 +135,7 @@ void meshes() {
   settings.one_sided_meshes = true;  // only where every mesh is the surface of a solid
   pd::BulletPenetrationDepthSolver solver(settings);
   // [/mesh]
-  expect(report->triangles == 2, "two triangles");
+  expect(report->faces == 2, "two triangles");
   expect(ground.getMeshInterface() == &triangles && settings.one_sided_meshes, "the mesh is Bullet's");
 }
 

@@ -1,24 +1,17 @@
 #include "pd/bullet/mesh_check.hpp"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstring>
+#include <numeric>
 #include <optional>
 #include <string>
-#include <unordered_map>
-#include <unordered_set>
+#include <vector>
 
-#include "pd/numeric/vector.hpp"
+#include "pd/bullet/scalar.hpp"
 #include "pd/shape/pose.hpp"
-#include "shapes/mixed_bits.hpp"
 
 namespace pd {
 
 namespace {
-
-using Corner = std::array<double, 3>;
-using Corners = std::array<std::uint64_t, 3>;  ///< of a triangle or, with a 0, of an edge: their numbers
 
 /// The arrays of one part while they are locked.
 class LockedPart {
@@ -49,14 +42,12 @@ class LockedPart {
     if (index_type == PHY_SHORT) return read<std::uint16_t>(at, corner);
     return at[corner];
   }
-  [[nodiscard]] Corner vertex(std::int64_t i) const {
+  [[nodiscard]] Vec3 vertex(std::int64_t i) const {
     const unsigned char* at = vertices + i * vertex_stride;
-    Corner corner;
-    for (int k = 0; k < 3; ++k) {
-      corner[static_cast<std::size_t>(k)] =
-          vertex_type == PHY_FLOAT ? static_cast<double>(read<float>(at, k)) : read<double>(at, k);
-    }
-    return corner;
+    const auto number = [&](int k) {
+      return vertex_type == PHY_FLOAT ? static_cast<double>(read<float>(at, k)) : read<double>(at, k);
+    };
+    return {number(0), number(1), number(2)};
   }
 
   const unsigned char* vertices = nullptr;
@@ -80,85 +71,43 @@ class LockedPart {
   int part_;
 };
 
-class MeshReader {
- public:
-  explicit MeshReader(const btVector3& scaling)
-      : scaling_{static_cast<double>(scaling.x()), static_cast<double>(scaling.y()), static_cast<double>(scaling.z())} {
-  }
-
-  std::optional<Error> read(const LockedPart& part, const std::string& name) {
-    for (int t = 0; t < part.num_triangles; ++t) {
-      const auto where = [&] { return name + ".triangles[" + std::to_string(t) + "]"; };
-      Corners ids{};
-      std::array<Vec3, 3> points;
-      for (int k = 0; k < 3; ++k) {
-        const std::int64_t index = part.index(t, k);
-        if (index >= part.num_vertices) {
-          return Error{ErrorCode::out_of_range,
-                       "index " + std::to_string(index) + " of " + std::to_string(part.num_vertices) + " vertices",
-                       where()};
-        }
-        Corner corner = part.vertex(index);
-        for (std::size_t i = 0; i < 3; ++i) {
-          // 0 and -0 are one place.
-          corner[i] = corner[i] * scaling_[i] + 0.0;
-          if (!std::isfinite(corner[i])) return Error{ErrorCode::non_finite, "a corner that is no number", where()};
-          if (std::abs(corner[i]) > kMaxCoordinate) {
-            return Error{ErrorCode::out_of_range, "a corner too far out", where()};
-          }
-          points[static_cast<std::size_t>(k)][static_cast<Eigen::Index>(i)] = corner[i];
-        }
-        ids[static_cast<std::size_t>(k)] = corners_.try_emplace(corner, corners_.size()).first->second;
+/// Appends the corners of a part's triangles, three of each.
+std::optional<Error> read(const LockedPart& part, const Vec3& scaling, const std::string& name,
+                          std::vector<Vec3>& corners) {
+  for (int t = 0; t < part.num_triangles; ++t) {
+    const auto where = [&] { return name + ".triangles[" + std::to_string(t) + "]"; };
+    for (int k = 0; k < 3; ++k) {
+      const std::int64_t index = part.index(t, k);
+      if (index >= part.num_vertices) {
+        return Error{ErrorCode::out_of_range,
+                     "index " + std::to_string(index) + " of " + std::to_string(part.num_vertices) + " vertices",
+                     where()};
       }
-      take(ids, points);
+      const Vec3& corner = corners.emplace_back(part.vertex(index).cwiseProduct(scaling));
+      if (!corner.allFinite()) return Error{ErrorCode::non_finite, "a corner that is no number", where()};
+      if (corner.cwiseAbs().maxCoeff() > kMaxCoordinate) {
+        return Error{ErrorCode::out_of_range, "a corner too far out", where()};
+      }
     }
-    return std::nullopt;
   }
-
-  [[nodiscard]] MeshReport report() {
-    for (const auto& [edge, count] : edges_) {
-      report_.open_edges += count == 1 ? 1 : 0;
-      report_.forked_edges += count > 2 ? 1 : 0;
-    }
-    return report_;
-  }
-
- private:
-  void take(Corners ids, const std::array<Vec3, 3>& points) {
-    ++report_.triangles;
-    if ((points[1] - points[0]).cross(points[2] - points[0]).isZero(0)) {
-      ++report_.without_area;
-      return;
-    }
-    std::sort(ids.begin(), ids.end());
-    if (!triangles_.insert(ids).second) {
-      ++report_.repeated;
-      return;
-    }
-    ++edges_[{ids[0], ids[1], 0}];
-    ++edges_[{ids[1], ids[2], 0}];
-    ++edges_[{ids[0], ids[2], 0}];
-  }
-
-  Corner scaling_;
-  MeshReport report_;
-  std::unordered_map<Corner, std::uint64_t, detail::HashOfArray> corners_;
-  std::unordered_set<Corners, detail::HashOfArray> triangles_;
-  std::unordered_map<Corners, int, detail::HashOfArray> edges_;  // summed over only
-};
+  return std::nullopt;
+}
 
 }  // namespace
 
-Expected<MeshReport> check_mesh(const btStridingMeshInterface& mesh) {
-  MeshReader reader(mesh.getScaling());
+Expected<SurfaceReport> check_mesh(const btStridingMeshInterface& mesh) {
+  std::vector<Vec3> points;
   for (int i = 0; i < mesh.getNumSubParts(); ++i) {
     const std::string name = "parts[" + std::to_string(i) + "]";
     const LockedPart part(mesh, i);
     if (const char* reason = part.unreadable()) return Error{ErrorCode::bad_value, reason, name};
     if (!part.readable_types()) return Error{ErrorCode::unsupported, "a type that Bullet cannot read", name};
-    if (const auto refusal = reader.read(part, name)) return *refusal;
+    if (const auto refusal = read(part, to_pd(mesh.getScaling()), name, points)) return *refusal;
   }
-  return reader.report();
+  std::vector<std::int32_t> corners(points.size()), offsets;
+  std::iota(corners.begin(), corners.end(), 0);
+  for (std::size_t i = 0; i <= points.size(); i += 3) offsets.push_back(static_cast<std::int32_t>(i));
+  return check_mesh({points, offsets, corners}, {.crossings = false});
 }
 
 }  // namespace pd
