@@ -27,21 +27,23 @@ constexpr double kRoom = 4 * kUnitRoundoff;
 /// A share of the reach. Facets of P and supports err by less.
 constexpr double kBoundError = 0x1p-45;
 
-/// Of the reach: between two hulls of 32 vertices both ways take as long.
-constexpr double kCloseCentres = 0.25;
+/// A surface takes the longer the closer the bodies' centres are, the kernel the longer the more vertices they have.
+/// Measured: both take as long where the squared distance times the number of vertices is so often the sum of the
+/// bodies' second moments.
+constexpr double kCloseCentres = 75;
 /// Of the product of a body's squared semi-axes to that of a ball of their sum: an ellipsoid of semi-axes 1, 1/2 and
 /// 1/4 has .19, a box of these extents, too, one of 1, 1 and 1/8 .05.
-constexpr double kLeastRoundness = 0.1;
+constexpr double kLeastRoundness = 0.08;
 
 bool has_few_facets(const ConvexPolytope& p) {
   return p.affine_dimension() == 3 && p.num_vertices() <= kMostGaussVertices && p.num_facets() <= kMostGaussFacets;
 }
 
-/// Neither long or flat, nor so far from its frame's origin that its size is lost in the reach.
+/// Neither long nor flat.
 bool is_round(const ConvexPolytope& p) {
   const Mat3& moments = p.storage().second_moments;
   const double mean = moments.trace() / 3;
-  return moments.determinant() > kLeastRoundness * mean * mean * mean && 2 * p.centre().norm() < p.radius();
+  return moments.determinant() > kLeastRoundness * mean * mean * mean;
 }
 
 GaussSatBody body_of(const ConvexPolytope& polytope, const VertexArrays& posed, const Mat3& turn, double growth) {
@@ -138,10 +140,11 @@ bool gauss_sat_applies(const ConvexPolytope& a, const ConvexPolytope& b) {
 }
 
 bool gauss_sat_pays(const PolytopeDifference& difference) {
-  if (has_small_gauss_map(difference.a()) && has_small_gauss_map(difference.b())) return true;
-  if (!is_round(difference.a()) || !is_round(difference.b())) return false;
-  const double close = kCloseCentres * difference.reach();
-  return difference.centre().squaredNorm() < close * close;
+  const ConvexPolytope &a = difference.a(), &b = difference.b();
+  if (has_small_gauss_map(a) && has_small_gauss_map(b)) return true;
+  if (!is_round(a) || !is_round(b)) return false;
+  const double moments = a.storage().second_moments.trace() + b.storage().second_moments.trace();
+  return difference.centre().squaredNorm() * (a.num_vertices() + b.num_vertices()) < kCloseCentres * moments;
 }
 
 GaussSatDepth gauss_sat_depth(const Pose& pose_a, const Pose& pose_b, const PolytopeDifference& difference,

@@ -44,9 +44,8 @@ struct GaussSatDepth {
 /// True if both bodies are solids of so few facets.
 [[nodiscard]] bool gauss_sat_applies(const ConvexPolytope& a, const ConvexPolytope& b);
 
-/// True if it is worth it, measured: both are small, or the bodies' centres are close to each other and neither is long
-/// or flat, nor far from its frame's origin. A surface needs 15 supports or more then, against 10 where bodies meet by
-/// their rims.
+/// True if it is worth it, measured: both are small, or neither is long or flat and their centres are close to each
+/// other. A surface needs 15 supports or more then, against 10 where bodies meet by their rims.
 [[nodiscard]] bool gauss_sat_pays(const PolytopeDifference& difference);
 
 /// Requires `gauss_sat_applies`, and of the difference `prepare_supports` and a reach between 2^-100 and 2^100. No

@@ -59,29 +59,23 @@ static_assert(2 * Middle::kEdges <= 0xFF);
 PD_INLINE void place_planes(Planes<Middle>& out, const GaussSatBody& body, const double (&offset)[3]) {
   const ConvexPolytope::Storage& s = body.storage;
   out.used = (s.num_facets + 2 * kFloats - 1) / (2 * kFloats) * 2;
-  const int end = kFloats * out.used;
-  alignas(32) double x[Middle::kFacets], y[Middle::kFacets], z[Middle::kFacets];
   const std::uint8_t* const first = single_bytes(s.facet_offsets);
   const std::uint8_t* const corners = single_bytes(s.facet_vertices);
-  for (int f = 0; f < end; ++f) {
-    const int i = f < s.num_facets ? f : 0;
-    const double* const n = s.facet_normals[i].data();
-    out.nx[f] = n[0];
-    out.ny[f] = n[1];
-    out.nz[f] = n[2];
-    const int on = corners[first[i]];
-    x[f] = body.posed.x[on];
-    y[f] = body.posed.y[on];
-    z[f] = body.posed.z[on];
-  }
+  const double* const normals = s.facet_normals->data();
+  const int facets = s.num_facets, end = kFloats * out.used;
   for (int f = 0; f < end; f += kLanes) {
-    LaneVectors n, p;
-    load(n.x, out.nx + f);
-    load(n.y, out.ny + f);
-    load(n.z, out.nz + f);
-    load(p.x, x + f);
-    load(p.y, y + f);
-    load(p.z, z + f);
+    const double* of[kLanes];
+    int on[kLanes];
+    for (int k = 0; k < kLanes; ++k) {
+      const int i = f + k < facets ? f + k : 0;
+      of[k] = normals + 3 * i;
+      on[k] = corners[first[i]];
+    }
+    LaneVectors n = {{of[0][0], of[1][0], of[2][0], of[3][0]},
+                     {of[0][1], of[1][1], of[2][1], of[3][1]},
+                     {of[0][2], of[1][2], of[2][2], of[3][2]}};
+    LaneVectors p;
+    gather(p, body.posed, on[0], on[1], on[2], on[3]);
     turn(n, body.turn);
     store_planes(out, f, n, n.x * (p.x + offset[0]) + n.y * (p.y + offset[1]) + n.z * (p.z + offset[2]));
   }
@@ -249,21 +243,20 @@ PD_INLINE void levels_of(Floats& out, const Planes<Size>& planes, int first, dou
 template <class Size>
 PD_INLINE void mark_far_facets(VertexSets<Size>& far, const Planes<Size>& planes, const Heights<Size>& other, int count,
                                const VertexSets<Size>& tops, double radius, double slack) {
-  // Two blocks together, as each waits for itself.
-  constexpr int kTogether = 2;
+  constexpr int kTogether = 2;  // blocks
   for (int f = 0; f < kFloats * planes.blocks(); f += kTogether * kFloats) {
     Floats level[kTogether], height;
-    Ids sets[kTogether] = {};
+    Bits sets[kTogether] = {}, bit = Bits{} + 1U;
     for (int i = 0; i < kTogether; ++i) levels_of(level[i], planes, f + kFloats * i, radius, slack);
-    // The last vertex first, so that each ends at the bit of its number.
-    for (int v = count - 1; v >= 0; --v) {
+    for (int v = 0; v < count; ++v) {
       for (int i = 0; i < kTogether; ++i) {
         load(height, other.row[v] + f + kFloats * i);
-        sets[i] = sets[i] + sets[i] - (height > level[i]);
+        sets[i] |= (Bits)(height > level[i]) & bit;
       }
+      bit += bit;
     }
     for (int i = 0; i < kTogether; ++i) {
-      Ids top;
+      Bits top;
       __builtin_memcpy(&top, tops.of + f + kFloats * i, sizeof(top));
       sets[i] |= top;
     }
@@ -309,29 +302,29 @@ PD_INLINE bool keep_near_edges(KeptEdges<Size>& out, const GaussSatBody& body, c
     for (kept &= (1U << map.edges) - 1; kept != 0; kept &= kept - 1)
       out.edge[count++] = map.edge[std::countr_zero(kept)];
   } else {
-    // Half-edges lie in order round their origins: to the right of each is what is to the left of the one before.
     const ConvexPolytope::Storage& s = body.storage;
     const std::uint8_t* const first = single_bytes(s.neighbour_offsets);
     const std::uint8_t* const left_facets = single_bytes(s.left_facets);
-    std::uint8_t kept[2 * Size::kEdges + 1];
-    int both_ways = 0;
-    for (int v = 0; v < s.num_vertices; ++v) {
-      const int end = first[v + 1];
-      std::uint32_t right = far[left_facets[end - 1]];
-      for (int h = first[v]; h < end; ++h) {
-        const std::uint32_t left = far[left_facets[h]];
-        kept[both_ways] = static_cast<std::uint8_t>(h);
-        both_ways += static_cast<int>((left & right) == 0);
-        right = left;
-      }
-    }
     const std::uint8_t* const twins = single_bytes(s.twins);
     const std::uint8_t* const targets = single_bytes(s.neighbours);
-    for (int k = 0; k < both_ways; ++k) {
-      const std::uint8_t h = kept[k], twin = twins[h];
-      if (twin < h) continue;
-      out.edge[count] = {targets[twin], targets[h], left_facets[h], left_facets[twin]};
-      ++count;
+    alignas(32) std::uint32_t left[2 * Size::kEdges + kFloats], right[2 * Size::kEdges + kFloats];
+    // Half-edges lie in order round their origins: to the right of each is what is to the left of the one before.
+    const int vertices = s.num_vertices, both_ways = s.num_half_edges;
+    for (int h = 0; h < both_ways; h += 2) {
+      left[h] = right[h + 1] = far[left_facets[h]];
+      left[h + 1] = right[h + 2] = far[left_facets[h + 1]];
+    }
+    for (int v = 0; v < vertices; ++v) right[first[v]] = left[first[v + 1] - 1];
+    for (int from = 0; from < both_ways; from += kFloats) {
+      Ids of_left, of_right;
+      __builtin_memcpy(&of_left, left + from, sizeof(of_left));
+      __builtin_memcpy(&of_right, right + from, sizeof(of_right));
+      unsigned near = mask_of_eight((of_left & of_right) == 0);
+      if (both_ways - from < kFloats) near &= (1U << (both_ways - from)) - 1;
+      for (; near != 0; near &= near - 1) {
+        const int h = from + std::countr_zero(near), twin = twins[h];
+        if (twin > h) out.edge[count++] = {targets[twin], targets[h], left_facets[h], left_facets[twin]};
+      }
     }
   }
   out.count = count;
