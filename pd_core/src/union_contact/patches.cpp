@@ -189,15 +189,6 @@ void Patches::keep_one_of_each(int patch, double merge) {
 void Patches::choose_in(int index, double breaking_threshold, std::span<const LastPatch> last) {
   Patch& patch = patches_[static_cast<std::size_t>(index)];
   const Vec3& n = patch.normal;
-  if (patch.last >= 0) {
-    const LastPatch& before = last[static_cast<std::size_t>(patch.last)];
-    for (Point& point : points_) {
-      point.lasting = point.patch == index &&
-                      std::any_of(before.places.begin(), before.places.begin() + before.count, [&](const Vec3& x) {
-                        return (x - point.contact.position_b).squaredNorm() < breaking_threshold * breaking_threshold;
-                      });
-    }
-  }
   keep_one_of_each(index, kMerge * breaking_threshold);
   chosen_.clear();
   const auto take = [&](const Point* point) {
@@ -224,6 +215,15 @@ void Patches::choose_in(int index, double breaking_threshold, std::span<const La
   if (left_.size() <= 4) {
     while (!left_.empty()) take(left_.front());
     return;
+  }
+  if (patch.last >= 0) {
+    const LastPatch& before = last[static_cast<std::size_t>(patch.last)];
+    for (Point& point : points_) {
+      point.lasting = point.patch == index &&
+                      std::any_of(before.places.begin(), before.places.begin() + before.count, [&](const Vec3& x) {
+                        return (x - point.contact.position_b).squaredNorm() < breaking_threshold * breaking_threshold;
+                      });
+    }
   }
   // No face's edges are likely to have this direction.
   const Vec3 u = n.unitOrthogonal();
