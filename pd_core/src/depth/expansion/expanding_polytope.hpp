@@ -94,7 +94,6 @@ class ExpandingPolytope {
     ExpansionGoal convex = goal;
     convex.max_loss = 4 * lower_error();
     convex.loss_from = -std::numeric_limits<double>::infinity();
-    if (surface_.size() <= kMostFlipped) surface_.flip_reflex_edges();
     ExpansionResult result = grow(convex, ExpansionResult{});
     if (result.status == ExpansionStatus::undecided && surface_.rebuild(flat_volume())) result = grow(goal, result);
     if (surface_.watch) report_end(surface_.watch, kDoubleArithmetic, result);
@@ -286,9 +285,6 @@ class ExpandingPolytope {
   /// Near contact, where no lower bound is above 0, a face that lies farther beyond the origin than the one before it
   /// by this share of the reach was turned over by rounding. A search would go on from it for thousands of steps.
   static constexpr double kFold = 0x1p-30;
-
-  /// Larger surfaces that lost their convexity are rebuilt, which makes them smaller: measured on coherent frames.
-  static constexpr int kMostFlipped = 40;
 
   const Difference& difference_;
   InnerSurface& surface_;

@@ -58,7 +58,6 @@ void InnerSurface::make_room(int count) {
     for (auto* numbers : {&face_numbers_, &vertex_numbers_}) numbers->reserve(kFirstRoom);
     free_.reserve(kFirstRoom / 2);
     nearness_.reserve(kFirstRoom);
-    open_edges_.reserve(4 * kFirstRoom);
   }
   const int wanted = padded_to_block(2 * count + kPlaneBlock);
   const auto room = static_cast<std::size_t>(wanted);

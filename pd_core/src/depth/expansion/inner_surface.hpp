@@ -10,10 +10,9 @@
 /// doubles, four at a time.
 ///
 /// By file: storage (inner_surface.cpp), insertion of a point (inner_surface_insert.cpp), repair of a surface whose
-/// points have moved (inner_surface_flips.cpp, inner_surface_rebuild.cpp).
+/// points have moved (inner_surface_rebuild.cpp).
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -107,9 +106,6 @@ class InnerSurface {
   [[nodiscard]] SpreadPoints spread_vertices() const;
   /// Four faces on those; the other vertices are dropped. False when they are flat.
   bool start_from_spread_vertices(double flat);
-  /// Flips edges along which the surface is not convex, and drops vertices that lie inside, as far as that goes. Of a
-  /// restored surface only.
-  void flip_reflex_edges();
   /// In place of the faces there are, the hull (up to rounding) of the newest vertex, those of the nearest faces and
   /// four that spread far; the others are dropped. False where they are flat.
   bool rebuild(double flat);
@@ -155,16 +151,6 @@ class InnerSurface {
   [[gnu::cold, gnu::noinline]] void make_room(int count);
 
   void clear_faces();
-
-  // flip_reflex_edges, step by step
-  static constexpr int kMostFlips = 4;  ///< a slot
-  [[nodiscard]] bool is_reflex(int f, std::int32_t e) const;
-  void flip(int f, std::int32_t e);
-  void drop_vertex(int f, int g, int third, const std::array<std::int32_t, 3>& around, std::int32_t vertex,
-                   std::int32_t beyond_first, std::int32_t beyond_second);
-  void set_plane(int f, const Vec3& normal, double level, double key);
-  /// Two edges, each 4 * face + edge, become each other's other side.
-  void join(std::int32_t outside, std::int32_t edge);
 
   // insert, step by step
   int insert_vertex(int from, int v, double x, double y, double z);
@@ -213,7 +199,6 @@ class InnerSurface {
     std::int32_t vertex;
   };
   std::vector<NearVertex> nearness_;
-  std::vector<std::int32_t> open_edges_;
   std::vector<DifferenceVertex> kept_;
 
   std::vector<std::int16_t> face_numbers_;
