@@ -45,7 +45,6 @@ void InnerSurface::clear_faces() {
   std::fill_n(keys_.begin(), slots_, kRemoved);
   std::fill_n(levels_.begin(), slots_, kRemoved);
   free_.clear();
-  queue_.clear();
   slots_ = 0;
   in_use_ = 0;
   append_mode_ = true;
@@ -65,7 +64,6 @@ void InnerSurface::make_room(int count) {
   for (auto* values : {&nx_, &ny_, &nz_}) values->resize(room, 0);
   levels_.resize(room, kRemoved);
   keys_.resize(room, kRemoved);
-  queue_.reserve(room);
   removed_bits_.resize(room / 64 + 1, 0);
   for (auto* ids : {&from_, &to_, &outside_, &removed_}) ids->resize(room);
   for (auto* values : {&fan_nx_, &fan_ny_, &fan_nz_, &fan_levels_, &fan_keys_}) values->resize(room);

@@ -20,7 +20,6 @@
 #include <vector>
 
 #include "depth/difference/polytope_difference.hpp"
-#include "depth/expansion/nearest_face_queue.hpp"
 #include "depth/expansion/plane_kernels.hpp"
 #include "depth/expansion/search_report.hpp"
 #include "depth/expansion/surface_check.hpp"
@@ -191,7 +190,6 @@ class InnerSurface {
   std::vector<double> fan_nx_, fan_ny_, fan_nz_, fan_levels_, fan_keys_;
 
   int nearest_ = 0;
-  NearestFaceQueue queue_;           ///< active on large surfaces only
   unsigned checked_insertions_ = 0;  ///< see validate_after_insertion
 
   struct NearVertex {

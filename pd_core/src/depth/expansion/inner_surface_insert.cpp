@@ -21,8 +21,6 @@ namespace pd::detail {
 
 namespace {
 
-/// Up to this many slots the nearest face is found by a scan, which costs less than keeping a heap.
-constexpr int kHeapFrom = 448;
 /// Up to this many slots, as many as a word has bits, all planes are tested against a new vertex at once, which costs
 /// less than a flood; beyond, faces are no longer added at the end.
 constexpr int kFewSlots = 64;
@@ -188,16 +186,7 @@ void InnerSurface::fill_with_free_slots(int v) {
     plane.key[f] = fan.key[i];
   }
   join_fan(v, [slots](std::int32_t i) { return slots[i]; });
-  if (slots_ <= kHeapFrom && !queue_.active()) {
-    nearest_ = least_key(keys_.data(), slots_);
-    return;
-  }
-  if (queue_.active()) {
-    for (int i = 0; i < count; ++i) queue_.push(slots[i], keys_[slots[i]]);
-  } else {
-    queue_.start(keys_.data(), slots_, kRemoved);
-  }
-  nearest_ = queue_.nearest();
+  nearest_ = least_key(keys_.data(), slots_);
 }
 
 /// The triangles of a cone over the horizon and their neighbours.
@@ -227,9 +216,6 @@ void InnerSurface::list_free_slots() {
 
 /// Makes `removed_` the slots of `count` new faces; removed faces beyond those leave free slots.
 void InnerSurface::take_slots(int count) {
-  if (queue_.active()) {
-    for (int i = 0; i < removed_count_; ++i) queue_.remove(removed_[i]);
-  }
   in_use_ += count - removed_count_;
   for (int i = removed_count_; i < count; ++i) {
     if (free_.empty()) {
