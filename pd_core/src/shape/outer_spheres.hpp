@@ -13,6 +13,6 @@ namespace pd::detail {
 ///
 /// Sphere i lies inside where every direction d has a sphere j with <c_j - c_i, d> + (r_j - r_i) |d| > 0. The
 /// directions are the points of a cube, which is cut into cells until one j does for all of a cell.
-void keep_outer_spheres(std::vector<Sphere>& spheres);
+[[gnu::cold]] void keep_outer_spheres(std::vector<Sphere>& spheres);
 
 }  // namespace pd::detail

@@ -116,7 +116,7 @@ Error too_many(double delta, double needed, std::int64_t limit) {
           "delta"};
 }
 
-Expected<DirectionGrid> geodesic_grid(double delta, GridExtent extent, std::int64_t limit) {
+[[gnu::cold]] Expected<DirectionGrid> geodesic_grid(double delta, GridExtent extent, std::int64_t limit) {
   // f^2 delta lies between 0.26 (the limit) and 0.31 (f = 1).
   const double faces = extent == GridExtent::sphere ? 20 : 10;
   const double start = std::max(1.0, std::floor(std::sqrt(0.25 / delta)));

@@ -23,7 +23,8 @@ struct ExactClosestPoint {
 };
 
 /// @param start  vertices of P to begin with (1 to 4), e.g. the simplex of an inexact search; not trusted.
-[[nodiscard]] ExactClosestPoint exact_closest_point(const PosedPair& pair, const VertexPair* start, int count);
+[[nodiscard, gnu::cold]] ExactClosestPoint exact_closest_point(const PosedPair& pair, const VertexPair* start,
+                                                               int count);
 
 struct ClosestSimplex {
   std::array<VertexPair, 4> vertices;

@@ -11,8 +11,8 @@ namespace pd::detail {
 
 namespace {
 
-void polytope_grid(const PolytopePair& pair, double delta, const DepthSettings& settings, ScratchBuffers& buffers,
-                   PenetrationDepth& out) {
+[[gnu::cold]] void polytope_grid(const PolytopePair& pair, double delta, const DepthSettings& settings,
+                                 ScratchBuffers& buffers, PenetrationDepth& out) {
   const PenetrationDepth cores = coarse_core_depth(pair, buffers);
   if (cores.contact != ContactClass::overlapping) {
     DepthSettings exactly;
@@ -41,8 +41,8 @@ void polytope_grid(const PolytopePair& pair, double delta, const DepthSettings& 
   out.statistics.exact_signs = cores.statistics.exact_signs + posed.stages().double_double + posed.stages().exact;
 }
 
-void smooth_grid(const PosedShape& a, const PosedShape& b, double delta, const DepthSettings& settings,
-                 ScratchBuffers& buffers, PenetrationDepth& out) {
+[[gnu::cold]] void smooth_grid(const PosedShape& a, const PosedShape& b, double delta, const DepthSettings& settings,
+                               ScratchBuffers& buffers, PenetrationDepth& out) {
   DepthSettings coarse;
   coarse.delta = 1;
   smooth_depth(a, b, coarse, buffers, out);

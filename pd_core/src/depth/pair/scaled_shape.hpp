@@ -13,7 +13,7 @@ namespace pd::detail {
 
 /// Times 2^exponent. Sizes that fall below 2^-900 are raised to it, of spheres lowered to 0: next to a pair of size 1
 /// that is nothing. Builds a polytope's hull anew where a coordinate is rounded.
-[[nodiscard]] ConvexShape scaled(const ConvexShape& shape, int exponent);
+[[nodiscard, gnu::cold]] ConvexShape scaled(const ConvexShape& shape, int exponent);
 
 /// Two bodies times 2^-exponent about A's translation, which comes to lie at the origin: what is far away may be small.
 /// Holds what its posed shapes refer to.

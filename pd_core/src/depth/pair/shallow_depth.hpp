@@ -14,7 +14,8 @@ inline constexpr double kDefaultShallowDelta = 0.25;
 inline constexpr double kLeastShallowDelta = 0x1p-8;
 
 /// @param grid  of covering radius arccos(1 / (1 + delta / 4)).
-void shallow_depth(const PolytopePair& pair, double delta, const DirectionGrid& grid, const DepthSettings& settings,
-                   ScratchBuffers& buffers, PenetrationDepth& out, ShallowCounts& counts);
+[[gnu::cold]] void shallow_depth(const PolytopePair& pair, double delta, const DirectionGrid& grid,
+                                 const DepthSettings& settings, ScratchBuffers& buffers, PenetrationDepth& out,
+                                 ShallowCounts& counts);
 
 }  // namespace pd::detail

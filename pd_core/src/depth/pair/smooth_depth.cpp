@@ -406,8 +406,9 @@ void move_witnesses(const Vec3& translation_a, PenetrationDepth& out) {
 }
 
 /// The narrower one of this answer and one for the whole cores.
-[[gnu::noinline]] void narrow_by_whole_cores(const PosedShape& a, const PosedShape& b, const DepthSettings& settings,
-                                             ScratchBuffers& buffers, PenetrationDepth& out) {
+[[gnu::cold, gnu::noinline]] void narrow_by_whole_cores(const PosedShape& a, const PosedShape& b,
+                                                        const DepthSettings& settings, ScratchBuffers& buffers,
+                                                        PenetrationDepth& out) {
   PenetrationDepth whole;
   SmoothQuery(a, b, settings, buffers, whole, nullptr, Rolling::kept).solve();
   whole.statistics.support_calls += out.statistics.support_calls;
