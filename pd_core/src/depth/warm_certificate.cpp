@@ -28,8 +28,7 @@ std::size_t WarmCertificate::memory_bytes() const {
   if (!state_) return sizeof(*this);
   const detail::WarmState& s = *state_;
   return sizeof(*this) + sizeof(s) + s.vertices.capacity() * sizeof(detail::VertexPair) +
-         s.faces.capacity() * sizeof(detail::CachedFace) +
-         (s.reference.distances.capacity() + s.reference.spreads.capacity()) * sizeof(float);
+         s.faces.capacity() * sizeof(detail::CachedFace);
 }
 
 detail::WarmState& WarmCertificate::state() {

@@ -40,22 +40,5 @@ TEST(PlaneKernels, LanesBeyondTheLastTriangleAreFree) {
   }
 }
 
-TEST(PlaneKernels, FacesAreNearThatMayHaveTurnedSoFar) {
-  constexpr int kCount = 40;
-  float distances[kCount], spreads[kCount];
-  for (int i = 0; i < kCount; ++i) {
-    distances[i] = 0.25F * static_cast<float>(i % 8);
-    spreads[i] = static_cast<float>(i / 8);
-  }
-  for (const float turn : {0.0F, 0.125F, 0.5F}) {
-    for (const float limit : {0.5F, 1.0F}) {
-      const std::uint64_t near = near_faces(distances, spreads, kCount, turn, limit);
-      for (int i = 0; i < kCount; ++i) {
-        EXPECT_EQ((near >> i & 1) != 0, distances[i] - turn * spreads[i] <= limit) << i;
-      }
-    }
-  }
-}
-
 }  // namespace
 }  // namespace pd::detail

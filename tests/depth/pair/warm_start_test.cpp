@@ -83,7 +83,6 @@ struct Ride {
   int frames = 0;
   int warm = 0;
   std::int64_t supports = 0;
-  std::int64_t facets = 0;
 };
 Ride ride(PairFamily family, int n, DepthClass depth, std::uint64_t seed, double angle, double drift, int frames) {
   const scenes::PointPair start = scenes::make_pair(family, n, depth, seed);
@@ -109,19 +108,16 @@ Ride ride(PairFamily family, int n, DepthClass depth, std::uint64_t seed, double
     ++out.frames;
     out.warm += answer.warm;
     out.supports += answer.statistics.support_calls;
-    out.facets += answer.statistics.facets_visited;
   }
   return out;
 }
 
-TEST(Warm, LooksAtAFewFacesWhileBodiesMoveSlowly) {
+TEST(Warm, AsksForOneSupportWhileBodiesMoveSlowly) {
   for (const PairFamily family : {PairFamily::sphere, PairFamily::prism, PairFamily::clouds}) {
     for (const DepthClass depth : {DepthClass::shallow, DepthClass::mid}) {
       const Ride slow = ride(family, 24, depth, 3, 0.0005, 1e-5, 40);
       EXPECT_EQ(slow.warm, slow.frames) << to_string(family);
-      // A support a frame, and less than half of the thirty faces or more that such a surface has.
       EXPECT_LE(slow.supports, slow.frames + 8) << to_string(family);
-      EXPECT_LE(slow.facets, 12 * slow.frames) << to_string(family);
       const Ride fast = ride(family, 24, depth, 3, 0.08, 0.01, 30);
       EXPECT_GT(10 * fast.warm, 8 * fast.frames) << to_string(family);
       // Growing anew takes ten supports and more.
@@ -144,9 +140,7 @@ TEST(Warm, SmallSolidsGoOnFromTheirSurface) {
           warm += of.warm;
           if (family != PairFamily::sphere || angle > 0.002 || seed > 2) continue;
           EXPECT_GE(of.warm, of.frames - 4);
-          // One support a frame, and far fewer planes than P has facets.
           EXPECT_LE(of.supports, of.frames + 8);
-          EXPECT_LE(of.facets, 12 * of.frames);
         }
       }
     }
@@ -164,9 +158,8 @@ TEST(Warm, BodiesApartAreMetWhereTheyWere) {
   }
 }
 
-TEST(Warm, MeasuresOfOtherBodiesAreNotBelieved) {
-  // As many vertices, and as far as the certificate knows as large, so that the surface may be tried; what it measured
-  // may not.
+TEST(Warm, SurfacesOfOtherBodiesAreNotBelieved) {
+  // As many vertices, and as far as the certificate knows as large, so that the surface is tried.
   const JudgedPair pair = JudgedPair::of_family(PairFamily::sphere, 24, DepthClass::mid, 5);
   const JudgedPair other = JudgedPair::of_family(PairFamily::sphere, 24, DepthClass::mid, 6);
   Scratch scratch;
@@ -175,8 +168,6 @@ TEST(Warm, MeasuresOfOtherBodiesAreNotBelieved) {
   PenetrationDepth answer;
   for (int k = 0; k < 3; ++k) answer = penetration_depth(pair.a(), pair.b(), scratch, hot, &certificate);
   ASSERT_TRUE(answer.warm);
-  ASSERT_GT(certificate.state().reference.clearance, 0);
-  ASSERT_LE(answer.statistics.facets_visited, 16);
   certificate.state().vertices_a = other.a().shape->polytope()->num_vertices();
   certificate.state().vertices_b = other.b().shape->polytope()->num_vertices();
   certificate.state().radius_a = other.a().shape->polytope()->radius();
@@ -184,7 +175,6 @@ TEST(Warm, MeasuresOfOtherBodiesAreNotBelieved) {
   answer = penetration_depth(other.a(), other.b(), scratch, hot, &certificate);
   const std::string complaint = other.complaint(answer, Bracket::certified);
   EXPECT_TRUE(complaint.empty()) << complaint;
-  EXPECT_EQ(certificate.state().reference.clearance, 0);
 }
 
 TEST(Warm, SurvivesJumpsAndOtherPairs) {

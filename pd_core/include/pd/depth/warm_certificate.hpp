@@ -1,6 +1,5 @@
 /// @file
-/// The memory of one pair between frames: the last surface inside P (its vertices as ids, its triangles) and how far
-/// its planes were from the origin when they were last computed.
+/// The memory of one pair between frames: the last surface inside P, its vertices as ids, and its triangles.
 ///
 /// Nothing in it is trusted: points and planes are computed from the present poses, so that a warm answer carries the
 /// same proof as a cold one.

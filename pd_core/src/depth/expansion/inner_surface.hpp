@@ -108,11 +108,6 @@ class InnerSurface {
   /// In place of the faces there are, the hull (up to rounding) of the newest vertex, those of the nearest faces and
   /// four that spread far; the others are dropped. False where they are flat.
   bool rebuild(double flat);
-  /// The distance by which every face has x behind it at least, sign * square; no normal is trusted further than
-  /// `slack` (six volumes) tells.
-  [[nodiscard]] double clearance(const Vec3& x, double slack) {
-    return least_clearance(planes(), slots_, x.x(), x.y(), x.z(), slack);
-  }
   /// A face visible from x, -1 where there is none.
   [[nodiscard]] int first_face_below(const Vec3& x);
   /// The face with the least key, the first of several.

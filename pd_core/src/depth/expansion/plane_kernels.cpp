@@ -156,33 +156,4 @@ PD_CLONES int least_key(const double* keys, int count) {
   return first_of(keys, least(second < first ? second : first));
 }
 
-PD_CLONES std::uint64_t near_faces(const float* distances, const float* spreads, int count, float turn, float limit) {
-  std::uint64_t bits = 0;
-  for (int i = 0; i < count; i += kPlaneBlock) {
-    Floats distance, spread;
-    load(distance, distances + i);
-    load(spread, spreads + i);
-    bits |= std::uint64_t{mask_of_eight(distance - turn * spread <= limit)} << i;
-  }
-  return bits;
-}
-
-PD_CLONES double least_clearance(const PlaneArrays& planes, int count, double x, double y, double z, double slack) {
-  const Lanes zero = {0, 0, 0, 0};
-  const Lanes lowest = zero - std::numeric_limits<double>::max();
-  Lanes nearest = zero + std::numeric_limits<double>::infinity();
-  for (int i = 0; i < padded_to_block(count); i += kLanes) {
-    Points normal;
-    Lanes level;
-    load_planes(normal, level, planes, i);
-    const Lanes below = level - (normal.x * x + normal.y * y + normal.z * z) - slack;
-    const Lanes squared = normal.x * normal.x + normal.y * normal.y + normal.z * normal.z;
-    const Lanes size = below < zero ? -below : below;
-    Lanes key = squared > zero ? below * size / squared : lowest;
-    key = level < std::numeric_limits<double>::infinity() ? key : level;
-    nearest = key < nearest ? key : nearest;
-  }
-  return least(nearest);
-}
-
 }  // namespace pd::detail

@@ -54,12 +54,4 @@ std::uint64_t planes_below(const PlaneArrays& planes, int count, double x, doubl
 /// Lowest index of the least key, count >= 1. Entries up to the next whole block must hold keys, too.
 int least_key(const double* keys, int count);
 
-/// Bit i: distances[i] - turn * spreads[i] <= limit in single precision, i < count <= 64. Entries up to the next whole
-/// block are read, their bits given.
-std::uint64_t near_faces(const float* distances, const float* spreads, int count, float turn, float limit);
-
-/// The least distance of a point below the planes, lessened by `slack` / |n| each, as sign * square; count >= 1.
-/// Entries up to the next whole block are read; free ones hold an infinite level.
-double least_clearance(const PlaneArrays& planes, int count, double x, double y, double z, double slack);
-
 }  // namespace pd::detail

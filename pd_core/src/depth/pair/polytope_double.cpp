@@ -6,6 +6,7 @@
 #include "depth/difference/barycentric.hpp"
 #include "depth/difference/foot_weights.hpp"
 #include "depth/distance/closest_of_few.hpp"
+#include "depth/expansion/cached_surface.hpp"
 #include "depth/facets/gauss_sat_boxes.hpp"
 #include "depth/facets/near_facets.hpp"
 #include "depth/pair/double_answer.hpp"
@@ -290,7 +291,7 @@ ExpansionResult grow_surface(PolytopeQuery& query, PenetrationDepth& out) {
   const bool restored = query.warm && restore_surface(query);
   if (restored && query.doubles_suffice() && certify_restored_surface(query, result, out.statistics)) {
     out.warm = true;
-    save_reference(query, result);
+    query.warm->state().direction = result.normal;
     return result;
   }
   ScratchBuffers& buffers = query.buffers;

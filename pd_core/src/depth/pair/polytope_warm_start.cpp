@@ -15,9 +15,6 @@ namespace pd::detail {
 
 namespace {
 
-/// Frames without a reference after one that was of no use.
-constexpr int kLongestPause = 15;
-
 /// As far as numbers tell: ids are in range, and whatever they lead to is computed from the present poses.
 bool is_of_pair(const WarmState& state, const PolytopePair& pair) {
   return state.vertices_a == pair.a->num_vertices() && state.vertices_b == pair.b->num_vertices() &&
@@ -51,30 +48,9 @@ bool certify_face(const PolytopeQuery& query, const DifferenceVertex (&corners)[
   return true;
 }
 
-bool answer_from_cached_faces(PolytopeQuery& query, PenetrationDepth& out) {
-  const WarmState& state = query.warm->state();
-  WarmReference& since = query.warm->state().reference;
-  if (!(since.clearance > 0)) return false;
-  if (!since.a->same_storage(*query.pair.a) || !since.b->same_storage(*query.pair.b)) return false;
-  RememberedFace near;
-  ExpansionResult result;
-  if (!nearest_remembered(state, query.difference, near) ||
-      !certify_face(query, near.corners, near.normal, near.distance, result)) {
-    since.pause = since.uses > 0 ? 0 : std::min(2 * since.pause_length + 1, kLongestPause);
-    since.pause_length = since.pause;
-    return false;
-  }
-  ++since.uses;
-  out.method = Method::expansion;
-  out.warm = true;
-  out.statistics.support_calls += 1;
-  out.statistics.facets_visited += near.faces_seen;
-  set_depth(query.pair, result.lower, result.upper, result.normal, out);
-  set_contact(query.pair, near.corners, near.weights, out);
-  return true;
-}
+}  // namespace
 
-bool answer_apart_from_cached_simplex(PolytopeQuery& query, PenetrationDepth& out) {
+bool answer_from_memory(PolytopeQuery& query, PenetrationDepth& out) {
   WarmState& state = query.warm->state();
   if (state.apart_count == 0) return false;
   const int count = std::exchange(state.apart_count, 0);
@@ -91,12 +67,6 @@ bool answer_apart_from_cached_simplex(PolytopeQuery& query, PenetrationDepth& ou
   out.method = Method::expansion;
   out.warm = true;
   return true;
-}
-
-}  // namespace
-
-bool answer_from_memory(PolytopeQuery& query, PenetrationDepth& out) {
-  return answer_from_cached_faces(query, out) || answer_apart_from_cached_simplex(query, out);
 }
 
 bool remembers_overlap(const PolytopeQuery& query) { return query.warm && !query.warm->state().faces.empty(); }
@@ -135,29 +105,13 @@ void save_surface(PolytopeQuery& query, const ExpansionResult& result) {
   if (!query.warm) return;
   WarmState& state = bind_to_pair(*query.warm, query.pair);
   state.direction = result.normal;
-  state.reference.clearance = 0;
   state.vertices.clear();
   state.faces.clear();
   state.vertices.reserve(kMaxRememberedVertices);
   state.faces.reserve(kMaxRememberedFaces);
-  state.reference.distances.reserve(kMaxRememberedFaces);
-  state.reference.spreads.reserve(kMaxRememberedFaces);
   InnerSurface& surface = query.buffers.surface;
   const bool certified = result.status == ExpansionStatus::certified;
   if (certified && surface.size() <= kMaxRememberedFaces) surface.save(state.vertices, state.faces);
-}
-
-void save_reference(PolytopeQuery& query, const ExpansionResult& result) {
-  WarmState& state = query.warm->state();
-  state.direction = result.normal;
-  state.reference.clearance = 0;
-  // Where frames differ so much that the surface grew or the last reference was of no use, the next one would not be,
-  // either.
-  if (state.reference.pause > 0) {
-    --state.reference.pause;
-  } else {
-    set_reference(state, query.buffers.surface, query.difference);
-  }
 }
 
 void save_simplex(PolytopeQuery& query, const ClosestPoint& nearest) {

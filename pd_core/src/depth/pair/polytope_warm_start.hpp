@@ -1,8 +1,8 @@
 /// @file
 /// The warm certificate of a pair of polytopes: what a query may take from it, and what it saves for the next one.
 ///
-/// Whatever the certificate holds is ids and bounds; planes and points are computed from the present poses, so that an
-/// answer is proved as if there had been no certificate.
+/// Whatever the certificate holds is ids; planes and points are computed from the present poses, so that an answer is
+/// proved as if there had been no certificate.
 #pragma once
 
 #include "depth/distance/gjk.hpp"
@@ -11,9 +11,7 @@
 
 namespace pd::detail {
 
-/// Answers from the last frame. A slowly moving pair is mostly answered from the nearest face of the saved surface,
-/// which is still a supporting plane of P (expansion/cached_surface.hpp). Bodies that were apart are answered from the
-/// vertices around their last closest point.
+/// Answers for bodies that were apart in the last frame, from the vertices around their last closest point.
 bool answer_from_memory(PolytopeQuery& query, PenetrationDepth& out);
 
 /// Whether a surface has been saved, of whatever pair: the bodies overlapped in the last frame.
@@ -27,8 +25,6 @@ bool answer_from_memory(PolytopeQuery& query, PenetrationDepth& out);
 
 /// The surface has grown, or is new.
 void save_surface(PolytopeQuery& query, const ExpansionResult& result);
-/// The restored surface held as it was: saves how far its planes are now, for `answer_from_cached_faces`.
-void save_reference(PolytopeQuery& query, const ExpansionResult& result);
 /// The simplex of P that holds its closest point, and the direction from there.
 void save_simplex(PolytopeQuery& query, const ClosestPoint& nearest);
 
