@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # From a fresh Debian 12 to pictures: installs the packages that are missing (as root; otherwise it names them), builds the
-# command into build/release and runs the main job, the demos stacking and rollback. What they make goes to out/.
+# command into build/release and runs the main job, the demos stacking and rollback, both at once. What they make goes to out/.
 #
 #   demos/run.sh [--steps N]    N steps in each demo, instead of each demo's own number
 set -euo pipefail
@@ -21,21 +21,28 @@ pd_require_packages "${pd_build_packages[@]}" "${pd_demo_packages[@]}"
 printf '== 2/4 build\n'
 pd_use_ccache
 cmake --preset release --log-level=WARNING "${pd_launcher[@]}"
-cmake --build --preset release --target pdepth pdepth_c pd_doors
+cmake --build --preset release --target pdepth
 
 demo_seconds=${SECONDS}
+mkdir -p out
 run_demo() {
-  local name=$1
-  shift
-  mkdir -p out
-  build/release/pdepth demo "${name}" --out "out/${name}" --video --force "$@" | tee "out/${name}.txt"
+  build/release/pdepth demo "$1" --out "out/$1" --video --force "${steps[@]}"
 }
+# The other core: the second demo, then what an installed copy holds beside the command.
+{
+  run_demo rollback >out/rollback.txt
+  cmake --build --preset release -j 1 --target pdepth_c pd_doors >out/build.txt 2>&1 || { cat out/build.txt >&2; exit 1; }
+} &
+other_core=$!
+trap 'kill "${other_core}" 2>/dev/null || true' EXIT
 printf '== 3/4 stacking: solver against solver from the same start\n'
-run_demo stacking "${steps[@]}"
+run_demo stacking | tee out/stacking.txt
 printf '== 4/4 rollback: taken back to the exact time of first contact\n'
-run_demo rollback "${steps[@]}"
+wait "${other_core}"
+cat out/rollback.txt
+demo_seconds=$((SECONDS - demo_seconds))
 
-printf '\n== done in %d s (demos %d s)\n' "${SECONDS}" "$((SECONDS - demo_seconds))"
+printf '\n== done in %d s (demos, C library and doors %d s)\n' "${SECONDS}" "${demo_seconds}"
 for name in stacking rollback; do
   printf '\n%s\n' "${name}"
   sed 's/^/  /' "out/${name}.txt"
