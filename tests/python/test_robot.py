@@ -454,3 +454,10 @@ def test_bad_questions_are_refused_by_name(read, ask, code, where):
 def test_a_robot_is_read_from_a_file():
     with pytest.raises(TypeError, match="from_urdf"):
         pdepth.Robot("arm.urdf")
+
+
+def test_a_file_that_cannot_be_read_is_named_by_its_path(tmp_path):
+    for path, told in ((tmp_path / "none.urdf", "No such file or directory"), (tmp_path, "must be a regular file")):
+        with pytest.raises(pdepth.Refused) as refused:
+            pdepth.Robot.from_urdf(path)
+        assert str(refused.value) == f"{path}: {told} (unreadable_file)"

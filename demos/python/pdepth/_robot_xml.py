@@ -79,13 +79,13 @@ def read_xml(path, root_tag):
     try:
         found = os.stat(path)
         if not stat.S_ISREG(found.st_mode):
-            raise refused(f"{name}: must be a regular file (unreadable_file)")
+            raise refused(f"{path}: must be a regular file (unreadable_file)")
         if found.st_size > _MOST_BYTES:
-            raise refused(f"{name}: has {found.st_size} bytes, and {_MOST_BYTES} are read (limit_exceeded)")
+            raise refused(f"{path}: has {found.st_size} bytes, and {_MOST_BYTES} are read (limit_exceeded)")
         with open(path, "rb") as file:
             text = file.read()
     except OSError as error:
-        raise refused(f"{name}: {error.strerror} (unreadable_file)") from None
+        raise refused(f"{path}: {error.strerror} (unreadable_file)") from None
     parser = expat.ParserCreate()
     parser.buffer_text = True
     top = Node("", {}, name)
