@@ -1,8 +1,8 @@
 """A table of a page as a chart, drawn when the site is built, so that figures stand in one place.
 
-    {{ chart lines WORDS }}   after a table: both axes logarithmic, the first column along x, a line for each further column
-    {{ chart bars WORDS }}    after a table: a bar for each number, rows by the first column
-    {{ chart ratios WORDS }}  the same with a line at 1
+    <!-- chart lines WORDS -->   after a table: both axes logarithmic, the first column along x, a line for each further column
+    <!-- chart bars WORDS -->    after a table: a bar for each number, rows by the first column
+    <!-- chart ratios WORDS -->  the same with a line at 1
 
 WORDS name the axis of the figures. A cell that is not a number leaves a gap. Colours follow the page, light or dark.
 """
@@ -13,7 +13,7 @@ from html import escape
 # Told apart by eyes that do not tell red from green.
 COLOURS = ("#3b7dd8", "#e08a1e", "#2a9d6f", "#a05bb0", "#c0504d")
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 680, 330, 64, 16, 34, 46
-TABLE = re.compile(r"((?:^\|.*\|\n)+)\n\{\{ chart (lines|bars|ratios) ([^}]+?) \}\}$", re.M)
+TABLE = re.compile(r"((?:^\|.*\|\n)+)\n<!-- chart (lines|bars|ratios) (.+?) -->$", re.M)
 
 
 def number(cell):

@@ -1,15 +1,15 @@
 """One source for each text: pages of the site take theirs from the READMEs, and links follow.
 
-A line of its own in a page:
-    {{ include FILE }}            the file, from the project's root, without its first heading
-    {{ include FILE # HEADING }}  one section of it, without its heading
-    {{ opening FILE }}            what stands between its first heading and its first section
-    {{ code FILE }}               the file as a block of code
-    {{ python reference }}        every public name of the Python package, from its docstrings
-    {{ chart KIND WORDS }}        the table before it as a chart (chart.py)
-In a line: {{ api WORDS }} links to the reference of the C++ headers, and {{ api WORDS # FILE.hpp }} to one header's page there.
+A page is Markdown that reads well in the repository, too. A link on a line of its own whose title is one of these words becomes, on the site:
+    [words](FILE "include")            the file without its first heading
+    [words](FILE#section "include")    one section of it, without its heading
+    [words](FILE "opening")            what stands between its first heading and its first section
+    [words](FILE "code")               the file as a block of code
+    [words](FOLDER "python reference") every public name of the Python package, from its docstrings
+The comment `chart KIND WORDS` behind a table draws the table as a chart (chart.py).
+Links to public headers lead to the reference of the C++ headers, and a link to a folder of headers to the list of them all.
 Doxygen writes the reference into the site's folder api, where it is installed; without it the words stand alone.
-Links to files of the project become links to the page that shows the file, pictures come along, and what no page shows
+Links to other files of the project become links to the page that shows the file, pictures come along, and what no page shows
 is named instead of linked. A link to nothing ends the build.
 """
 import json
@@ -54,8 +54,9 @@ OPTIONAL = {"python.md": "demos/python/README.md", "python_api.md": "demos/pytho
 # The page to play with, where packaging/wasm.sh has made it.
 PLAY = ROOT / "build/npm/play.html"
 DOXYGEN = shutil.which("doxygen")
-API = re.compile(r"\{\{ api ([^#}]+?)(?: # ([\w./]+))? \}\}")
-DIRECTIVE = re.compile(r"^\{\{ (include|opening|code) ([^#}]+?)(?: # ([^}]+?))? \}\}$", re.M)
+PAGES = "pd_core/docs/pages"
+HEADER = re.compile(r"(?:^|/)include/(pd\w*(?:/.*)?)$")
+DIRECTIVE = re.compile(r"^\[[^\]]*\]\(([^)\s#]+)(?:#([^)\s]+))? \"([^\"]*)\"\)$", re.M)
 LINK = re.compile(r"(!?)\[([^\]]*)\]\(([^)\s]+)\)")
 FENCE = re.compile(r"^(```.*?^```$)", re.M | re.S)
 CELL = re.compile(r"<td\b.*?</td>", re.S)
@@ -156,19 +157,17 @@ def on_post_build(config):
         raise PluginError(f"doxygen: {done.stderr}")
 
 
-def api_link(match):
-    """The page that Doxygen makes of a header; a name that no public header has ends the build."""
-    words, header = match.groups()
-    name = (header or "").split("/")[-1]
-    namesakes = [path.relative_to(ROOT).as_posix() for rooms in ("*", "engine_glue/*") for path in ROOT.glob(f"{rooms}/include/pd*/**/{name}")]
-    meant = [path for path in namesakes if header and path.endswith("/" + header)]
-    if header and len(meant) != 1:
-        raise PluginError(f"{header} names no public header, or several: a folder before it tells which")
+def api_link(words, path):
+    """The page that Doxygen makes of a public header, or its list of files for a folder of headers."""
     if not DOXYGEN:
         return words
+    if (ROOT / path).is_dir():
+        return f'<a href="api/files.html">{words}</a>'
+    name = posixpath.basename(path)
+    namesakes = [found.relative_to(ROOT).as_posix() for rooms in ("*", "engine_glue/*") for found in ROOT.glob(f"{rooms}/include/pd*/**/{name}")]
     # Doxygen names a page by its file, or where several have the same name by its path below their common folder, and escapes what
     # is no letter.
-    page = "files" if not header else name if len(namesakes) == 1 else posixpath.relpath(meant[0], posixpath.commonpath(namesakes))
+    page = name if len(namesakes) == 1 else posixpath.relpath(path, posixpath.commonpath(namesakes))
     page = page.replace("_", "__").replace(".", "_8").replace("/", "_2") + ".html"
     return f'<a href="api/{page}">{words}</a>'
 
@@ -179,7 +178,11 @@ def outside_code(text, change):
     return "".join(part if i % 2 else change(part) for i, part in enumerate(parts))
 
 
-def section_of(text, heading, name):
+def anchor_of(heading):
+    return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
+
+
+def section_of(text, anchor, name):
     lines, kept, depth, fenced = text.split("\n"), [], 0, False
     for line in lines:
         fenced ^= line.startswith("```")
@@ -188,10 +191,10 @@ def section_of(text, heading, name):
             break
         if depth:
             kept.append(line)
-        elif found and found[2] == heading:
+        elif found and anchor_of(found[2]) == anchor:
             depth = len(found[1])
     if not depth:
-        raise PluginError(f"{name} has no section '{heading}'")
+        raise PluginError(f"{name} has no section '{anchor}'")
     return "\n".join(kept)
 
 
@@ -206,9 +209,13 @@ def linked_from(text, folder, page):
         path = posixpath.normpath(posixpath.join(folder, path))
         if not (ROOT / path).exists():
             raise PluginError(f"{page}: {target} names nothing (looked for {path})")
+        if anchor and path.endswith(".md"):
+            section_of((ROOT / path).read_text(), anchor, path)  # where the link leads in the repository
         if picture:
-            return f"![{words}]({path})"
-        if re.match(r"pd_core/docs/pages/\w+\.md$", path):
+            return f"![{words}]({path.removeprefix(f'{PAGES}/')})"
+        if HEADER.search(path):
+            return api_link(words, path)
+        if re.match(rf"{PAGES}/\w+\.md$", path):
             return f"[{words}]({posixpath.basename(path)}{'#' + anchor if anchor else ''})"
         if path in SHOWN and SHOWN[path] not in left_out():
             return f"[{words}]({SHOWN[path]}{'#' + anchor if anchor else ''})"
@@ -217,35 +224,40 @@ def linked_from(text, folder, page):
     return outside_code(text, lambda part: LINK.sub(replaced, part))
 
 
-def on_page_markdown(markdown, page, config, files):
-    def expanded(match):
-        kind, name, heading = match.groups()
-        source = ROOT / name
-        if not source.exists():
-            raise PluginError(f"{page.file.src_path}: there is no {name}")
-        text = source.read_text()
-        if kind == "code":
-            language = {".cpp": "cpp", ".h": "c", ".py": "python", ".yml": "yaml"}[source.suffix]
-            return f"```{language}\n{text.rstrip()}\n```"
-        if heading:
-            text = section_of(text, heading, name)
-        else:
-            text = re.sub(r"\A# .*\n", "", text)
-        if kind == "opening":
-            text = re.split(r"^## ", text, flags=re.M)[0]
-        return linked_from(text, os.path.dirname(name), page.file.src_path)
-
-    text = DIRECTIVE.sub(expanded, markdown)
-    if "{{ python reference }}" in text:
+def included(kind, name, anchor, page):
+    """The text that stands on the site in place of a link to a file."""
+    source = ROOT / name
+    if not source.exists():
+        raise PluginError(f"{page}: there is no {name}")
+    if kind == "python reference":
         try:
-            text = text.replace("{{ python reference }}", python_reference.page(ROOT))
+            return python_reference.page(ROOT)
         except python_reference.Missing as missing:
             raise PluginError(str(missing))
-    text = outside_code(chart.with_charts(text), lambda part: API.sub(api_link, part))
-    return text + f"\n\n<small>Source of this page: {source_of(page.file.src_path)}</small>\n"
+    text = source.read_text()
+    if kind == "code":
+        language = {".cpp": "cpp", ".h": "c", ".py": "python", ".yml": "yaml"}[source.suffix]
+        return f"```{language}\n{text.rstrip()}\n```"
+    text = section_of(text, anchor, name) if anchor else re.sub(r"\A# .*\n", "", text)
+    if kind == "opening":
+        text = re.split(r"^## ", text, flags=re.M)[0]
+    elif kind != "include":
+        raise PluginError(f"{page}: a link may not have the title '{kind}'")
+    return linked_from(text, os.path.dirname(name), page)
+
+
+def on_page_markdown(markdown, page, config, files):
+    name = page.file.src_path
+
+    def expanded(match):
+        path, anchor, kind = match.groups()
+        return included(kind, posixpath.normpath(posixpath.join(PAGES, path)), anchor, name)
+
+    text = DIRECTIVE.sub(expanded, linked_from(markdown, PAGES, name))
+    return chart.with_charts(text) + f"\n\n<small>Source of this page: {source_of(name)}</small>\n"
 
 
 def source_of(name):
     """The file that a reader changes to change the page."""
     shown = [file for file, page in SHOWN.items() if page == name and name != "index.md"]
-    return ", ".join(f"<code>{file}</code>" for file in [f"pd_core/docs/pages/{name}", *shown])
+    return ", ".join(f"<code>{file}</code>" for file in [f"{PAGES}/{name}", *shown])
