@@ -1,7 +1,7 @@
 """Runs the lines of documents and compares what they print: `run_lines.py FOLDER_OF_PROGRAMS FILE...`.
 
-A block of code marked `console` holds commands after "$ ", each followed by what it prints. A line of JSON that ends in
-",...}" shows some keys of what is printed: those must have the very values shown, the others are free.
+A block of code marked `console` holds commands after "$ ", each followed by what it prints. In a line of JSON `...` stands for
+members that are not shown. The text around it must stand in what is printed, in that order, and the members shown must have these values.
 """
 import json
 import os
@@ -30,10 +30,14 @@ def commands(text):
 
 
 def differs(shown, printed):
-    if shown.endswith(",...}"):
-        wanted, got = json.loads(shown[: -len(",...}")] + "}"), json.loads(printed)
-        return [f"{key}: {got.get(key)!r} instead of {value!r}" for key, value in wanted.items() if got.get(key) != value]
-    return [] if shown == printed else [f"{printed!r} instead of {shown!r}"]
+    if "..." not in shown:
+        return [] if shown == printed else [f"{printed!r} instead of {shown!r}"]
+    wanted, got = json.loads(re.sub(r",?\.\.\.", "", shown)), json.loads(printed)
+    complaints = [f"{key}: {got.get(key)!r} instead of {value!r}" for key, value in wanted.items() if key not in got or got[key] != value]
+    pieces = map(re.escape, shown.split("..."))
+    if not complaints and not re.fullmatch(".*".join(pieces), printed):
+        complaints.append(f"the text is {printed!r} instead of {shown!r}")
+    return complaints
 
 
 def main(programs, files):
