@@ -46,7 +46,7 @@ struct StackSolverStatistics {
 /// Time: one sparse factorisation a step and group that is solved while the same points carry, and a few more where
 /// points come, go or slip. A factorisation takes O(n) for a tower of n bodies (`stack_growth` measured n^1.13, and
 /// n^1.21 for pyramids of up to 435 bodies). Where all groups of a call are solved, the sweeps end as soon as they mend
-/// nothing. A standing tower takes 1.1 of the step that ten sweeps take, a pyramid 1.6 to 1.8, a wall 1.7 to 2.9. Heaps
+/// nothing. A standing tower takes 1.1 of the step that ten sweeps take, a pyramid 1.6 to 1.9, a wall 1.7 to 3.4. Heaps
 /// and blocks, which are left to the sweeps, take at most 1.1. Columns that fall over take 2 until they are left alone.
 ///
 /// Bodies with angular factors other than 0 and 1 are solved with the square root of the factor on both sides of the
