@@ -209,8 +209,6 @@ def linked_from(text, folder, page):
         path = posixpath.normpath(posixpath.join(folder, path))
         if not (ROOT / path).exists():
             raise PluginError(f"{page}: {target} names nothing (looked for {path})")
-        if anchor and path.endswith(".md"):
-            section_of((ROOT / path).read_text(), anchor, path)  # where the link leads in the repository
         if picture:
             return f"![{words}]({path.removeprefix(f'{PAGES}/')})"
         if HEADER.search(path):
