@@ -150,7 +150,7 @@ struct Wrong {
 void print_judged(const CheckedMesh& checked, std::string_view name, MeshFault fault, const std::string& good,
                   const Wrong& wrong) {
   const std::int64_t count = checked.report.count(fault);
-  if (checked.report.faces == 0) return;
+  if (checked.report.faces == 0 || (checked.report.shells == 0 && fault != MeshFault::degenerate_face)) return;
   print_row(name,
             count == 0 ? good : fmt::format("{} {} {}", wrong.before, count, count == 1 ? wrong.one : wrong.many));
   print_places(checked, fault);
@@ -161,7 +161,9 @@ std::string verdict(const CheckedMesh& checked) {
   if (report.faces == 0) return "The file holds points and no faces: it bounds no solid.";
   if (!report.solid()) return "The faces do not bound a solid. What is in the way stands below.";
   if (!report.crossings_searched) return "No fault was found; faces that cross were not searched to the end.";
-  return report.convex ? "The faces bound a solid, and it is convex." : "The faces bound a solid, which is not convex.";
+  if (!report.convex) return "The faces bound a solid, which is not convex.";
+  return report.loose_points > 0 ? "The faces bound a convex solid, and points lie beside it."
+                                 : "The faces bound a solid, and it is convex.";
 }
 
 std::string queries_in_words(const CheckedMesh& checked) {
@@ -224,7 +226,9 @@ void print_report(const CheckedMesh& checked) {
   }
   if (report.count(MeshFault::degenerate_face) > 0) {
     print_judged(checked, "slivers", MeshFault::degenerate_face, "",
-                 {"yes:", "face has no area, which does no harm", "faces have no area, which does no harm"});
+                 report.has_area()
+                     ? Wrong{"yes:", "face has no area, which does no harm", "faces have no area, which does no harm"}
+                     : Wrong{"no other:", "face, and it has no area", "faces, and none has an area"});
   }
   if (checked.encloses()) print_row("volume", fmt::format("{:.10g}", checked.volume(report.relative_volume)));
   const auto note = query::why_hull(report, checked.hull);

@@ -11,11 +11,13 @@ namespace {
 /// Tells a person the first thing that keeps a mesh from being convex; empty for a convex mesh.
 std::string reason_of(const SurfaceReport& report) {
   if (report.faces == 0) return "the file holds points and no faces";
+  if (!report.has_area()) return "no face of the mesh has an area";
   if (!report.closed()) return "the mesh has holes";
   if (!report.oriented()) return "neighbouring faces of the mesh show opposite sides";
   if (!report.manifold()) return "more than two faces of the mesh share an edge, or its parts share a vertex";
   if (report.shells > 1) return "the mesh has several parts";
-  return report.convex ? "" : "the mesh is not convex";
+  if (!report.convex) return "the mesh is not convex";
+  return report.loose_points == 0 ? "" : "points lie beside the surface, in no face or in faces without an area";
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ MeshBody body_of_mesh(MeshPoints mesh, const std::string& name, const SolidWish&
   // Crossings are the dearest part, and a convex mesh has none.
   const auto quick = check_mesh(view, {.crossings = false, .extent = wish.extent});
   if (!quick) return hull(MeshAs::found);  // the hull's factory refuses the points by name
-  if (quick->convex && !wish.always) return hull(MeshAs::convex);
+  if (quick->convex && quick->loose_points == 0 && !wish.always) return hull(MeshAs::convex);
   if (const auto fault = fault_of_solid(*quick, wish.turn_faces)) refuse_fault(name, *fault, mesh, wish);
   const auto report = check_mesh(view, {.extent = wish.extent});
   if (!report) refuse(to_string(report.error().code), name + ": " + report.error().message, report.error().where);

@@ -432,6 +432,11 @@ TEST_F(MeshDoors, CheckSaysHowQueriesTakeTheFile) {
       {cloud_, "hull", "", "ask for the convex hull of the points"},
       {open_, "refused", "open_edge", "refuse the file (open_edge): mend the mesh; `pdepth depth --hull`"},
       {changed("flip.obj", "f 5 6 8 7", "f 7 8 6 5"), "refused", "flipped_face", "(flipped_face): mend the mesh"},
+      {write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\nf 3 2 1\n"), "refused", "degenerate_face",
+       "mend the mesh"},
+      {write("point.obj", "v 1 1 1\nf 1 1 1\n"), "refused", "degenerate_face",
+       "refuse the file (degenerate_face): mend"},
+      {write("beside.obj", text + "v 9 9 9\nf 9 9 9\n"), "solid", "", "ask for the solid that the faces bound"},
       {write("turned.obj", turned), "refused", "inside_out", "(inside_out): turn the faces, by \"turn_faces\":true"},
       {write("two.obj", text + "v 0.5 0.5 0.5\nv 0.7 0.5 0.5\nv 0.5 0.7 0.5\nv 0.5 0.5 2\n"
                                "f 9 11 10\nf 9 10 12\nf 9 12 11\nf 10 11 12\n"),

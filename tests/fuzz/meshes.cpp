@@ -1,5 +1,6 @@
 /// @file
-/// Any bytes as a mesh file, the first of them its format: points, or a refusal, and a check of the faces that ends.
+/// Any bytes as a mesh file, the first of them its format: points, or a refusal, a check of the faces that ends, and a
+/// solid that overlaps itself.
 #include <unistd.h>
 
 #include <array>
@@ -10,7 +11,23 @@
 #include "fuzz/input.hpp"
 #include "mesh/mesh_file.hpp"
 #include "pd/shape/mesh_check.hpp"
+#include "pd/solid/solid_depth.hpp"
 #include "support/refusal.hpp"
+
+namespace {
+
+/// A mesh without a fault is a solid, and a solid overlaps itself. Faces without an area, and surfaces inside of each
+/// other, are told apart later than by the report.
+void judge_solid(const pd::MeshView& mesh, const pd::SurfaceReport& report) {
+  const auto solid = pd::MeshSolid::from_checked(mesh, report, {.turn_faces = true});
+  const bool simple = report.count(pd::MeshFault::degenerate_face) == 0 && report.shells == 1;
+  PD_LAW(solid || !report.solid() || !report.crossings_searched || !simple);
+  if (!solid) return;
+  const pd::PosedSolid posed{&*solid, pd::Pose()};
+  PD_LAW(pd::classify(posed, posed) == pd::ContactClass::overlapping);
+}
+
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
@@ -24,9 +41,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     const auto mesh = pd::query::read_mesh_points(path, 10'000, std::uintmax_t{1} << 20);
     PD_LAW(mesh.ids.empty() || mesh.ids.size() == mesh.points.size());
-    if (const auto report = pd::check_mesh({mesh.points, mesh.faces.offsets, mesh.faces.corners})) {
+    const pd::MeshView view{mesh.points, mesh.faces.offsets, mesh.faces.corners};
+    if (const auto report = pd::check_mesh(view)) {
       PD_LAW(std::isfinite(report->relative_volume));
       PD_LAW(!report->convex || (report->closed() && report->oriented() && report->manifold()));
+      constexpr std::int64_t kMostFaces = 200;
+      if (mesh.faces.size() <= kMostFaces) judge_solid(view, *report);
     }
   } catch (const pd::query::Refusal&) {
   }

@@ -12,6 +12,7 @@
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/depth/scratch.hpp"
 #include "pd/shape/convex_polytope.hpp"
+#include "pd/shape/mesh_solid.hpp"
 #include "shape/mesh/triangle_crossings.hpp"
 
 namespace pd {
@@ -225,6 +226,39 @@ TEST(MeshCheck, DegenerateFacesOfAClosedMeshAreHarmless) {
   EXPECT_EQ(report.counts, only(MeshFault::degenerate_face, 1));
   EXPECT_TRUE(report.solid());
   EXPECT_TRUE(report.convex);
+}
+
+TEST(MeshCheck, PointsBesideTheSurfaceAreCounted) {
+  Mesh mesh = soup(box(0, 1));
+  const auto last = static_cast<std::int32_t>(mesh.points.size());
+  EXPECT_EQ(mesh.check().loose_points, 0);
+  mesh.points.insert(mesh.points.end(), 3, Vec3(9, 9, 9));  // one point, in a face of one corner thrice
+  mesh.face({last, last + 1, last + 2});
+  mesh.points.emplace_back(5, 5, 5);  // in no face
+  const SurfaceReport report = mesh.check();
+  EXPECT_EQ(report.counts, only(MeshFault::degenerate_face, 1));
+  EXPECT_EQ(report.loose_points, 2);
+  EXPECT_TRUE(report.solid());
+  EXPECT_TRUE(report.convex);
+}
+
+TEST(MeshCheck, FacesWithoutAnAreaAloneBoundNothing) {
+  Mesh one_point, line;
+  one_point.points.assign(3, Vec3(1, 1, 1));
+  one_point.face({0, 1, 2});
+  line.points = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(2, 0, 0)};
+  line.face({0, 1, 2});
+  line.face({2, 1, 0});
+  for (const Mesh& mesh : {one_point, line}) {
+    const SurfaceReport report = mesh.check();
+    EXPECT_FALSE(report.has_area());
+    EXPECT_FALSE(report.solid());
+    const auto solid = MeshSolid::from_faces({mesh.points, mesh.offsets, mesh.corners});
+    ASSERT_FALSE(solid.has_value());
+    EXPECT_EQ(solid.error().code, ErrorCode::bad_faces);
+    EXPECT_EQ(solid.error().where, "faces[0]");
+  }
+  EXPECT_FALSE(one_point.check().closed());
 }
 
 TEST(MeshCheck, SizesFromOneEndOfTheDoublesToTheOther) {

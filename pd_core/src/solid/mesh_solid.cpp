@@ -84,7 +84,7 @@ std::string in_words(const MeshFinding& finding) {
 
 std::optional<MeshFinding> fault_of_solid(const SurfaceReport& report, bool turn_faces) {
   for (const MeshFinding& finding : report.findings) {
-    if (finding.fault == MeshFault::degenerate_face) continue;
+    if (finding.fault == MeshFault::degenerate_face && report.has_area()) continue;
     if (finding.fault == MeshFault::inside_out && turn_faces && report.relative_volume < 0) continue;
     return finding;
   }

@@ -53,8 +53,9 @@ struct SurfaceReport {
   std::int64_t points = 0;    ///< as given
   std::int64_t vertices = 0;  ///< distinct points
   std::int64_t faces = 0;
-  std::int64_t shells = 0;  ///< connected parts of the surface
-  double size = 0;          ///< largest extent along an axis
+  std::int64_t shells = 0;        ///< connected parts of the surface; 0 where no face has three different corners
+  std::int64_t loose_points = 0;  ///< distinct points that are no corner of the surface, which a convex hull would hold
+  double size = 0;                ///< largest extent along an axis
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
 
   /// Number of faults of each kind, in the order of the enumeration.
@@ -72,12 +73,13 @@ struct SurfaceReport {
   bool convex = false;
 
   [[nodiscard]] std::int64_t count(MeshFault fault) const { return counts[static_cast<std::size_t>(fault)]; }
-  [[nodiscard]] bool closed() const { return faces > 0 && count(MeshFault::open_edge) == 0; }
-  [[nodiscard]] bool oriented() const { return faces > 0 && count(MeshFault::flipped_face) == 0; }
-  [[nodiscard]] bool manifold() const { return faces > 0 && count(MeshFault::not_manifold) == 0; }
+  [[nodiscard]] bool closed() const { return shells > 0 && count(MeshFault::open_edge) == 0; }
+  [[nodiscard]] bool oriented() const { return shells > 0 && count(MeshFault::flipped_face) == 0; }
+  [[nodiscard]] bool manifold() const { return shells > 0 && count(MeshFault::not_manifold) == 0; }
+  [[nodiscard]] bool has_area() const { return count(MeshFault::degenerate_face) < faces; }
   /// The faces bound a solid, as far as the check went.
   [[nodiscard]] bool solid() const {
-    return closed() && oriented() && manifold() && count(MeshFault::self_crossing) == 0 &&
+    return closed() && oriented() && manifold() && has_area() && count(MeshFault::self_crossing) == 0 &&
            count(MeshFault::inside_out) == 0 && count(MeshFault::not_planar) == 0;
   }
 };

@@ -68,7 +68,8 @@ class MeshSolid {
   std::int32_t num_shells_ = 0;
 };
 
-/// The first fault that keeps a mesh from bounding a solid, in the order of the enumeration; nothing for a solid.
+/// The first fault that keeps a mesh from bounding a solid, in the order of the enumeration; nothing for a solid. Faces
+/// without an area are a fault where no other face is there.
 /// @param turn_faces  a mesh that is wholly inside out counts as a solid.
 [[nodiscard]] std::optional<MeshFinding> fault_of_solid(const SurfaceReport& report, bool turn_faces = false);
 

@@ -81,6 +81,9 @@ class MeshChecker {
     report_.points = static_cast<std::int64_t>(mesh.points.size());
     report_.vertices = mesh_.distinct;
     report_.faces = mesh_.num_faces();
+    std::vector<char> on_surface(mesh.points.size(), 0);
+    for (const std::int32_t v : mesh_.corners) on_surface[static_cast<std::size_t>(v)] = 1;
+    report_.loose_points = mesh_.distinct - std::count(on_surface.begin(), on_surface.end(), 1);
     report_.low = report_.high = mesh.points.front();
     for (const Vec3& p : mesh.points) {
       report_.low = report_.low.cwiseMin(p);
