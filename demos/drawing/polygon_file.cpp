@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include "drawing/svg_file.hpp"
@@ -69,7 +71,8 @@ Polygon checked(const query::PolygonRings& rings) {
   Expected<Polygon> polygon = query::polygon_of(rings);
   if (!polygon) {
     const Error& error = polygon.error();
-    query::refuse(to_string(error.code), error.message, error.where + edge_ends(rings, error.where));
+    const std::string place = error.where + edge_ends(rings, error.where);
+    query::refuse(to_string(error.code), place.empty() ? error.message : place + ": " + error.message, "");
   }
   return std::move(polygon).value();
 }
@@ -166,18 +169,26 @@ PolygonFile read_drawing(const std::string& text, const std::string& id, std::op
   }
 }
 
+/// The file's ending, in small letters.
+std::string ending_of(const std::string& file) {
+  std::string ending = std::filesystem::path(file).extension();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
 }  // namespace
 
 PolygonFile read_polygon_file(const std::string& path, std::optional<double> flatness, const std::string& unit,
                               const query::Limits& limits) {
   const std::size_t hash = path.rfind('#');
-  const bool has_id = hash != std::string::npos && path.substr(0, hash).ends_with(".svg");
+  const bool has_id = hash != std::string::npos && ending_of(path.substr(0, hash)) == ".svg";
   const std::string file = has_id ? path.substr(0, hash) : path;
   try {
-    if (file.ends_with(".svg")) {
+    if (ending_of(file) == ".svg") {
       return read_drawing(read_text(file), has_id ? path.substr(hash + 1) : "", flatness, unit, limits);
     }
-    if (!file.ends_with(".json")) {
+    if (ending_of(file) != ".json") {
       query::refuse("unreadable_file", "the file ending must be .svg or .json", "");
     }
     const query::PolygonRings rings = read_json(read_text(file), limits);
@@ -186,7 +197,8 @@ PolygonFile read_polygon_file(const std::string& path, std::optional<double> fla
     // The reader of lines says what a line of queries holds.
     const bool no_object = refusal.message.starts_with("a line must be one JSON object");
     const char* const right = "the file must be one JSON object, {\"outer\": [[x,y],...]}";
-    query::refuse(refusal.code, path + ": " + (no_object ? right : refusal.message), refusal.where);
+    const std::string place = refusal.where.empty() ? "" : refusal.where + ": ";
+    query::refuse(refusal.code, path + ": " + place + (no_object ? right : refusal.message), "");
   }
 }
 

@@ -153,6 +153,11 @@ struct Found {
   bool even_odd;
 };
 
+struct Outlines {
+  std::string id;  ///< of the element that is asked for; empty: the drawing holds one
+  std::vector<Found> found;
+};
+
 /// What a walk down the tree inherits.
 struct Inherited {
   PlaneMap map;
@@ -174,9 +179,9 @@ void refuse_unknown_effects(const pugi::xml_node& node) {
   }
 }
 
-void collect(const pugi::xml_node& parent, const Inherited& inherited, std::vector<Found>& found);
+void collect(const pugi::xml_node& parent, const Inherited& inherited, Outlines& outlines);
 
-void visit(const pugi::xml_node& node, const Inherited& inherited, std::vector<Found>& found) {
+void visit(const pugi::xml_node& node, const Inherited& inherited, Outlines& outlines) {
   const std::string_view name = local_name(node);
   if (name.empty() || is_one_of(name, {"defs", "metadata", "title", "desc", "symbol", "clipPath", "mask", "marker",
                                        "pattern", "linearGradient", "radialGradient", "filter", "script", "view"})) {
@@ -213,17 +218,30 @@ void visit(const pugi::xml_node& node, const Inherited& inherited, std::vector<F
   }
   if (const auto rule = property(node, "fill-rule"); rule && *rule != "inherit") own.even_odd = *rule == "evenodd";
   if (name == "g" || name == "a") {
-    collect(node, own, found);
+    collect(node, own, outlines);
   } else if (is_one_of(name, {"path", "rect", "circle", "ellipse", "polygon", "polyline"})) {
-    found.push_back({node, own.map, own.even_odd});
+    outlines.found.push_back({node, own.map, own.even_odd});
   } else {
     unsupported(node, "an element that is not understood");
   }
 }
 
-void collect(const pugi::xml_node& parent, const Inherited& inherited, std::vector<Found>& found) {
+/// What cannot be read beside the element that is asked for does no harm; a style sheet rules the whole drawing.
+bool matters(const pugi::xml_node& node, const std::string& id) {
+  const auto rules = [&](const pugi::xml_node& inner) {
+    return id == inner.attribute("id").value() || local_name(inner) == "style";
+  };
+  return id.empty() || rules(node) || node.find_node(rules);
+}
+
+void collect(const pugi::xml_node& parent, const Inherited& inherited, Outlines& outlines) {
   for (const pugi::xml_node& node : parent.children()) {
-    if (node.type() == pugi::node_element) visit(node, inherited, found);
+    if (node.type() != pugi::node_element) continue;
+    try {
+      visit(node, inherited, outlines);
+    } catch (const query::Refusal&) {
+      if (matters(node, outlines.id)) throw;
+    }
   }
 }
 
@@ -269,9 +287,9 @@ SvgOutline read_svg(std::string_view text, const std::string& id) {
   if (const pugi::xml_attribute transform = root.attribute("transform")) {
     inherited.map = page.map.after(parse_transform(transform.value()));
   }
-  std::vector<Found> found;
-  collect(root, inherited, found);
-  const Found& one = chosen(found, id);
+  Outlines outlines{id, {}};
+  collect(root, inherited, outlines);
+  const Found& one = chosen(outlines.found, id);
   SvgOutline outline{rings_of(one.node), page.unit, one.even_odd, described(one.node)};
   if (outline.rings.empty()) query::refuse("bad_value", outline.element + " bounds no area", "");
   for (SvgRing& ring : outline.rings) {

@@ -217,6 +217,21 @@ TEST_F(Files, OneOfSeveralByItsId) {
   EXPECT_NE(refusal(file + "#x").find("no outline has the id \"x\""), std::string::npos);
 }
 
+TEST_F(Files, WhatLiesBesideTheElementDoesNotMatter) {
+  const std::string body =
+      "<text id='t'>label</text><g transform='turn(3)'><rect id='far' width='1' height='1'/></g>"
+      "<g><use href='#r'/><rect id='r' width='1' height='1'/></g>";
+  const std::string file = write("LABELS.SVG", svg(body));
+  EXPECT_EQ(read(file + "#r").polygon.num_vertices(), 4);
+  EXPECT_NE(refusal(file).find("letters"), std::string::npos) << refusal(file);
+  EXPECT_NE(refusal(file + "#t").find("letters"), std::string::npos) << refusal(file + "#t");
+  EXPECT_NE(refusal(file + "#far").find("unknown function \"turn\""), std::string::npos) << refusal(file + "#far");
+  EXPECT_NE(refusal(file + "#x").find("no outline has the id \"x\"; there are <rect id=\"r\">"), std::string::npos)
+      << refusal(file + "#x");
+  const std::string sheet = write("sheet.svg", svg(body + "<g><style>rect{transform:scale(2)}</style></g>"));
+  EXPECT_NE(refusal(sheet + "#r").find("style sheet"), std::string::npos) << refusal(sheet + "#r");
+}
+
 TEST_F(Files, UnitsAreTurnedIntoEachOther) {
   const std::string inches = write("in.svg", svg("<rect width='1' height='1'/>", "width='8in' viewBox='0 0 8 8'"));
   EXPECT_NEAR(read(inches, {}, "mm").polygon.point(2)[0], 25.4, 1e-13);
@@ -239,14 +254,14 @@ TEST_F(Files, RefusalsNameWhatIsWrongAndWhere) {
     EXPECT_TRUE(found.starts_with(code + "|")) << found;
     EXPECT_NE(found.find(words), std::string::npos) << words << " in " << found;
   };
-  const std::string crossing = "|outer[0], the edge from (0.0, 0.0) to (4.0, 4.0)";
+  const std::string crossing = ": outer[0], the edge from (0.0, 0.0) to (4.0, 4.0): the edges";
   expect("x.json", "{\"outer\":[[0,0],[4,4],[4,0],[0,4]]}", "bad_value", crossing);
   expect("x.svg", svg("<path id='bow' d='M0 0L4 4L4 0L0 4z'/>"), "bad_value", crossing);
-  expect("x.svg", svg("<path id='bow' d='M0 0L4 4L4 0L0 4z'/>"), "bad_value", "<path id=\"bow\">: the edges");
+  expect("x.svg", svg("<path id='bow' d='M0 0L4 4L4 0L0 4z'/>"), "bad_value", "<path id=\"bow\">: outer[0]");
   expect("x.svg", svg("<path fill-rule='evenodd' d='M0 0H9V9H0zM8 1H20V5H8z'/>"), "bad_value", "cross");
   // Clockwise: edges are named as the caller's ring runs.
   expect("x.json", "{\"outer\":[[0,4],[4,0],[5,9],[4,4],[0,0]]}", "bad_value",
-         "|outer[3], the edge from (4.0, 4.0) to (0.0, 0.0)");
+         ": outer[3], the edge from (4.0, 4.0) to (0.0, 0.0): ");
   expect("x.json", "{\"outer\":[[0,0],[1,1]]}", "too_few_points", "outer");
   expect("x.json", "{\"outer\":[[0,0],[1,\"nan\"],[2,0]]}", "non_finite", "outer[1]");
   expect("x.json", "[1,2]", "bad_json", "JSON object");
