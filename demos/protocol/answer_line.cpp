@@ -59,6 +59,15 @@ LineAnswer error_answer(std::string_view id_text, const Refusal& refusal) {
   return answer;
 }
 
+/// A text of many lines is read line by line, and none of them is JSON.
+Refusal refusal_of_line(Refusal refusal, std::string_view line) {
+  constexpr std::string_view kBlanks = " \t\r";
+  const std::size_t first = line.find_first_not_of(kBlanks), last = line.find_last_not_of(kBlanks);
+  const bool whole = first != line.npos && line[first] == '{' && line[last] == '}';
+  if (!whole && refusal.message.starts_with("not JSON")) refusal.message += "; a line must be one whole JSON object";
+  return refusal;
+}
+
 Handler find_handler(const Node& line, const Limits& limits) {
   const Node name_node = line.at("query");
   const std::string name = read_string(name_node);
@@ -151,7 +160,8 @@ LineAnswer answer_line(std::string_view line, Session& session, const IdSeen& id
   return answered(id, [&] {
     const ParsedLine parsed = parse_line_within(line, session.limits.max_vertices, keep_id);
     id = parsed.id_text;
-    return parsed.refusal ? error_answer(id, *parsed.refusal) : answer_parsed(parsed, session, Care::full);
+    if (parsed.refusal) return error_answer(id, refusal_of_line(*parsed.refusal, line));
+    return answer_parsed(parsed, session, Care::full);
   });
 }
 

@@ -39,6 +39,31 @@ TEST(Refusals, Queries) {
   });
 }
 
+TEST(Refusals, KeysThatStandTwice) {
+  expect_refusals({
+      {with_a(R"({"type":"box","half_extents":[1,1,1],"half_extents":[2,2,2]})"), "bad_json", "a.half_extents"},
+      {with_more(R"("delta":0.1,"delta":0.2)"), "bad_json", "delta"},
+      {R"({"id":3,"query":"width","a":{"type":"compound","parts":[{},{"x":1,"x":2}]}})", "bad_json", "a.parts[1].x"},
+  });
+  EXPECT_EQ(answer(with_more(R"("delta":0.1,"delta":0.2)")).at("id"), answer(with_more(R"("delta":0.1)")).at("id"));
+}
+
+TEST(Refusals, TextThatIsNoLines) {
+  const auto message = [](std::string_view line) {
+    const Json reply = answer(std::string(line));
+    EXPECT_EQ(code_of(reply), "bad_json") << reply;
+    return reply.at("error").at("message").get<std::string>();
+  };
+  using std::operator""sv;
+  for (const char* line : {"{", " \"id\": 1,", "[[0,0],", "}"}) {
+    EXPECT_TRUE(message(line).ends_with("; a line must be one whole JSON object")) << line << ": " << message(line);
+  }
+  EXPECT_EQ(message("{\"id\":1,}").find("whole"), std::string::npos);
+  for (const std::string_view line : {"\xFF\xFE{\0}\0"sv, "\0{\0}"sv, "{\0}\0"sv, "\0"sv}) {
+    EXPECT_EQ(message(line), "the line is UTF-16; UTF-8 is read");
+  }
+}
+
 TEST(Refusals, UnknownKeys) {
   expect_refusals({
       {with_more(R"("colour":"red")"), "bad_value", "colour"},
@@ -91,6 +116,7 @@ TEST(Refusals, Shapes) {
       {with_a(R"({"type":"mesh","path":"/nowhere/at/all.obj"})"), "unreadable_file", "a.path"},
       {with_a(R"({"type":"mesh","path":"/dev/zero"})"), "unreadable_file", "a.path"},
       {with_a(R"({"type":"mesh","path":"/"})"), "unreadable_file", "a.path"},
+      {with_a(R"({"type":"mesh","path":""})"), "unreadable_file", "a.path"},
       {with_a(R"({"type":"mesh"})"), "missing_field", "a.path"},
   });
 }

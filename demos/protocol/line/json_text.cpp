@@ -84,7 +84,9 @@ class StrictBuilder {
   bool key(std::string& value) {
     if (open_.back()->contains(value)) {
       if (!refusal) {
-        refusal = Refusal{"bad_json", "the key \"" + shortened(value) + "\" stands twice in one object", ""};
+        const std::string name = shortened(value), inside = path();
+        refusal = Refusal{"bad_json", "the key \"" + name + "\" stands twice in one object",
+                          inside.empty() ? name : inside + "." + name};
       }
       // The first "id" is no more the caller's than the second.
       if (open_.size() == 1 && value == "id") id_text_.reset();
@@ -322,6 +324,11 @@ void release(Json& value) {
   if (value.is_array()) value.get_ref<Json::array_t&>().clear();
 }
 
+/// By its byte order mark, or because one of the first two bytes is zero.
+bool is_utf16(std::string_view line) {
+  return line.starts_with("\xFF\xFE") || line.starts_with("\xFE\xFF") || line.substr(0, 2).find('\0') != line.npos;
+}
+
 }  // namespace
 
 bool is_blank(std::string_view line) { return line.find_first_not_of(" \t\r\n") == std::string_view::npos; }
@@ -332,6 +339,10 @@ ParsedLine parse_line_within(std::string_view line, std::int64_t max_points, con
   ParsedLine parsed;
   if (line.starts_with("\xEF\xBB\xBF")) {
     parsed.refusal = Refusal{"bad_json", "the line begins with a byte order mark; JSON text has none", ""};
+    return parsed;
+  }
+  if (is_utf16(line)) {
+    parsed.refusal = Refusal{"bad_json", "the line is UTF-16; UTF-8 is read", ""};
     return parsed;
   }
   StrictBuilder builder(line.size(), max_points, id_seen);
