@@ -19,20 +19,31 @@ std::vector<std::string> installed_recorders() {
   return found;
 }
 
+bool holds(const std::vector<std::string>& words, const std::string& word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
 }  // namespace
 
 std::vector<AccuracyEngine> find_engines(const std::vector<std::string>& programs, const std::vector<std::string>& only,
                                          std::vector<std::string>& complaints) {
   std::vector<AccuracyEngine> engines;
+  std::vector<std::string> all;
   for (const std::string& program : programs.empty() ? installed_recorders() : programs) {
     const std::vector<std::string> names = engines_of(program);
     if (names.empty()) complaints.push_back(program + ": no recorder: `" + program + " --list` names no engine");
     for (const std::string& name : names) {
-      const bool wanted = only.empty() || std::find(only.begin(), only.end(), name) != only.end();
-      const bool known =
-          std::any_of(engines.begin(), engines.end(), [&](const AccuracyEngine& e) { return e.name == name; });
-      if (wanted && !known) engines.push_back({program, name});
+      if (holds(all, name)) continue;
+      all.push_back(name);
+      if (only.empty() || holds(only, name)) engines.push_back({program, name});
     }
+  }
+  for (const std::string& name : only) {
+    if (all.empty() || holds(all, name)) continue;
+    std::string known;
+    for (const std::string& engine : all) known += (known.empty() ? "" : ", ") + engine;
+    complaints.push_back("--engines: there is no engine \"" + name + "\"; known: " + known);
+    engines.clear();
   }
   return engines;
 }

@@ -16,7 +16,7 @@ struct AccuracyEngine {
 
 /// The engines that the programs name, each name once.
 /// @param programs  empty: the recorders beside this program, or installed with it
-/// @param only  names that are wanted; empty: all
+/// @param only  names that are wanted; empty: all. Where no program knows one of them, none is returned
 [[nodiscard]] std::vector<AccuracyEngine> find_engines(const std::vector<std::string>& programs,
                                                        const std::vector<std::string>& only,
                                                        std::vector<std::string>& complaints);

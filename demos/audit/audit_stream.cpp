@@ -119,7 +119,7 @@ class RecordAuditor {
     });
     for (const Line& line : lines_) {
       if (line.refusal) {
-        audit_.summary.refuse(line.number, *line.refusal);
+        audit_.summary.refuse(line.number, *line.refusal, line.kind == LineKind::contact);
       } else if (line.kind == LineKind::contact) {
         audit_.summary.add(line.contact, line.judgement, line.number, line.text);
         if (seen_) seen_(line.contact, line.judgement, line.number);

@@ -91,8 +91,9 @@ void AuditSummary::add(const RecordedContact& contact, const Judgement& judgemen
   if (worst_.size() > worst_kept_) worst_.pop_back();
 }
 
-void AuditSummary::refuse(std::int64_t line, const query::Refusal& refusal) {
+void AuditSummary::refuse(std::int64_t line, const query::Refusal& refusal, bool contact) {
   ++refused_;
+  refused_contacts_ += contact ? 1 : 0;
   if (refusals_.size() < kKeptRefusals) refusals_.push_back({line, refusal});
 }
 

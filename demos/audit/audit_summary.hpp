@@ -67,7 +67,7 @@ class AuditSummary {
 
   /// In the order of the lines.
   void add(const RecordedContact& contact, const Judgement& judgement, std::int64_t line, const std::string& text);
-  void refuse(std::int64_t line, const query::Refusal& refusal);
+  void refuse(std::int64_t line, const query::Refusal& refusal, bool contact = false);
 
   [[nodiscard]] const Totals& total() const { return total_; }
   /// "box-convex": the two kinds in alphabetical order.
@@ -75,6 +75,8 @@ class AuditSummary {
   /// The worst first; of equal ones the earlier.
   [[nodiscard]] const std::vector<WorstContact>& worst() const { return worst_; }
   [[nodiscard]] std::int64_t refused() const { return refused_; }
+  /// Those of the refused lines that name a contact.
+  [[nodiscard]] std::int64_t refused_contacts() const { return refused_contacts_; }
   [[nodiscard]] const std::vector<RefusedLine>& refusals() const { return refusals_; }
   [[nodiscard]] bool all_judged() const { return refused_ == 0 && total_.unanswered == 0; }
 
@@ -84,6 +86,7 @@ class AuditSummary {
   std::map<std::string, Totals> by_kind_;
   std::vector<WorstContact> worst_;
   std::int64_t refused_ = 0;
+  std::int64_t refused_contacts_ = 0;
   std::vector<RefusedLine> refusals_;
 };
 

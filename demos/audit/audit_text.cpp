@@ -64,7 +64,7 @@ std::string audit_table(const Audit& audit, const std::vector<ConditionOutcome>&
   std::string text = fmt::format("record    {}  ({}, {})\n", record, audit.header.engine,
                                  audit.header.single_precision ? "float32" : "float64");
   text += fmt::format("contacts  {} judged of {}; errors relative to the pair's size, counts beyond {:g} of it\n\n",
-                      summary.total().judged, summary.total().contacts, audit.tolerance);
+                      summary.total().judged, summary.total().contacts + summary.refused_contacts(), audit.tolerance);
   std::size_t width = 9;
   for (const auto& [kind, totals] : summary.by_kind()) width = std::max(width, kind.size());
   text += fmt::format("{:<{}} {:>9} {:>7} {:>7} {:>6} |{:^26} |{:^17} |{:>8}\n", "", width, "", "", "", "no",

@@ -141,6 +141,10 @@ TEST_F(Accuracy, PairsOfARecordAndOfMeshes) {
   ASSERT_EQ(WEXITSTATUS(std::system((command + "--cases mine.jsonl > out 2>&1").c_str())), 0) << read("out");
   EXPECT_EQ(read("asked"), asked);
   EXPECT_NE(read("out").find("mine "), std::string::npos) << read("out");
+  ASSERT_EQ(WEXITSTATUS(std::system((command + "--engines great > out 2>&1").c_str())), 2);
+  EXPECT_NE(read("out").find("--engines: there is no engine \"great\"; known: good, bad\n"), std::string::npos)
+      << read("out");
+  EXPECT_EQ(read("out").find("no engine to ask"), std::string::npos) << read("out");
   EXPECT_EQ(WEXITSTATUS(std::system((command + "--meshes nowhere > out 2>&1").c_str())), 2);
 }
 

@@ -113,6 +113,8 @@ TEST_F(AuditProgram, RefusesLinesByNameAndJudgesTheRest) {
   EXPECT_NE(result.err.find(":15: bad_json: a line must be one JSON object with a \"shape\" or a \"contact\""),
             std::string::npos)
       << result.err;
+  const std::string table = run("audit record.jsonl").out;
+  EXPECT_NE(table.find("1 judged of 9;"), std::string::npos) << "eight lines name a contact and are refused\n" << table;
 }
 
 // The two mistakes that recorders make are named; one bad contact of an engine among good ones is none of them.
