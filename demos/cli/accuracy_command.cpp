@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <atomic>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -79,7 +80,7 @@ std::string command_of(const AccuracyArguments& arguments) {
 
 int run_accuracy_command(AccuracyArguments arguments) {
   arguments.settings.threads = number_of_threads(arguments.settings.threads);
-  refuse_to_overwrite({arguments.cases}, arguments.csv, "--csv");
+  check_outputs({arguments.cases}, {{"--csv", arguments.csv}});
   if (const std::string words = report::foreign_page(arguments.report); !words.empty() && !arguments.force) {
     query::refuse("bad_value", "--report: " + words, "");
   }
@@ -100,13 +101,12 @@ int run_accuracy_command(AccuracyArguments arguments) {
   std::vector<std::string> complaints;
   const auto engines = audit::find_engines(arguments.recorders, arguments.engines, complaints);
   for (const std::string& complaint : complaints) complain("{}", complaint);
-  if (engines.empty()) {
+  if (engines.empty() && complaints.empty()) {
     complain(
         "no engine to ask: install Debian's package pdepth-recorders, build record_peers (PD_WITH_RECORDERS), or name "
-        "a "
-        "--recorder");
-    return kBadUsage;
+        "a --recorder");
   }
+  if (engines.empty()) return kBadUsage;
   int started = 0;
   std::atomic<double> asked = 0;
   const double all = static_cast<double>(engines.size() * sources.size());
@@ -120,8 +120,7 @@ int run_accuracy_command(AccuracyArguments arguments) {
   progress.end();
   fmt::print("{}", printable(audit::accuracy_text(table), "\n"));
   if (!arguments.csv.empty() && !write_whole_file(arguments.csv, audit::accuracy_csv(table))) {
-    complain("{} cannot be written", arguments.csv);
-    return kFailed;
+    return cannot_write({"--csv", arguments.csv});
   }
   const char* judge =
       "Recorder programs asked each engine, and the audit judged what they wrote; judge and pdepth's own row share a "
@@ -129,8 +128,7 @@ int run_accuracy_command(AccuracyArguments arguments) {
   if (!arguments.report.empty() &&
       !report::write_page(arguments.report,
                           audit::accuracy_page(table, arguments.settings, judge, command_of(arguments)))) {
-    complain("{}/report.html cannot be written", arguments.report);
-    return kFailed;
+    return cannot_write({"--report", arguments.report + "/report.html"});
   }
   if (!arguments.report.empty()) fmt::print("\npage: {}/report.html\n", printable(arguments.report));
   return table.any_failed() ? kBadUsage : kDone;
@@ -148,7 +146,8 @@ void add_accuracy_command(CLI::App& app, Action& action) {
       ->add_option("--recorder", arguments->recorders,
                    "Programs that record (default: those beside this one, or installed with it)")
       ->delimiter(',');
-  command->add_option("--engines", arguments->engines, "Only these")->delimiter(',');
+  command->add_option("--engines", arguments->engines, "Only these; a name that no recorder knows lists them")
+      ->delimiter(',');
   command->add_option("--families", arguments->only_families, "Only these")
       ->delimiter(',')
       ->check(one_of(all_families()));
@@ -158,7 +157,9 @@ void add_accuracy_command(CLI::App& app, Action& action) {
   command->add_option("--vertices", settings.vertices, "Vertices of a body, where its family leaves the choice")
       ->check(number_between(4, 100'000))
       ->capture_default_str();
-  command->add_option("--seed", settings.seed, "Seed of the generated pairs")->capture_default_str();
+  command->add_option("--seed", settings.seed, "Seed of the generated pairs")
+      ->check(number_between(std::int64_t{0}, std::int64_t{1} << 53))
+      ->capture_default_str();
   command->add_option("--tolerance", settings.tolerance, "Of missed and phantom, relative to a pair's size")
       ->check(number_between(1e-15, 1.0))
       ->capture_default_str();

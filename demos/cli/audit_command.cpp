@@ -14,6 +14,7 @@
 #include "audit/audit_report.hpp"
 #include "commands.hpp"
 #include "line_input.hpp"
+#include "options.hpp"
 #include "pd/numeric/whole_file.hpp"
 #include "progress.hpp"
 #include "report/page.hpp"
@@ -63,11 +64,6 @@ void print_refusals(const std::string& record, const audit::AuditSummary& summar
   if (more > 0) complain("{}: {} more lines refused", record, more);
 }
 
-int cannot_write(const std::string& file) {
-  complain("{} cannot be written", file);
-  return kFailed;
-}
-
 /// The command that gives the same page again.
 std::string command_of(const AuditArguments& arguments) {
   std::string text = fmt::format("pdepth audit '{}' --worst {}", arguments.input, arguments.settings.worst_kept);
@@ -90,7 +86,7 @@ int read_record(const AuditArguments& arguments, audit::Audit& result) {
   audit::ContactSeen seen;
   if (!arguments.csv.empty()) {
     csv = std::make_unique<WholeFile>(arguments.csv);
-    if (!csv->good()) return cannot_write(arguments.csv);  // before an hour of judging, not after
+    if (!csv->good()) return cannot_write({"--csv", arguments.csv});  // before an hour of judging, not after
     csv->write(audit::csv_header());
     seen = [&csv](const audit::RecordedContact& contact, const audit::Judgement& judgement, std::int64_t line) {
       csv->write(audit::csv_row(contact, judgement, line));
@@ -103,13 +99,14 @@ int read_record(const AuditArguments& arguments, audit::Audit& result) {
   progress.end();
   print_refusals(arguments.input, result.summary);
   if (result.end == audit::Audit::End::unreadable) return cannot_read(arguments.input, reason);
-  if (csv != nullptr && !csv->finish()) return cannot_write(arguments.csv);
+  if (csv != nullptr && !csv->finish()) return cannot_write({"--csv", arguments.csv});
   return kDone;
 }
 
 int run_audit(AuditArguments arguments) {
   audit::AuditSettings& settings = arguments.settings;
   settings.threads = number_of_threads(settings.threads);
+  check_outputs({}, {{"--csv", arguments.csv}, {"--junit", arguments.junit}});
   if (arguments.tolerance > 0) settings.tolerance = arguments.tolerance;
   std::vector<audit::FailCondition> conditions;
   if (!arguments.fail_on.empty()) conditions = audit::parse_fail_conditions(arguments.fail_on);
@@ -121,7 +118,7 @@ int run_audit(AuditArguments arguments) {
   const auto outcomes = audit::check(conditions, result.summary);
   if (!arguments.junit.empty() &&
       !write_whole_file(arguments.junit, audit::audit_junit(result, outcomes, arguments.input))) {
-    return cannot_write(arguments.junit);
+    return cannot_write({"--junit", arguments.junit});
   }
   if (result.end == audit::Audit::End::no_record) {
     complain("{} is no record of contacts: `pdepth audit --help` shows what one holds", arguments.input);
@@ -129,7 +126,8 @@ int run_audit(AuditArguments arguments) {
   }
   if (!arguments.report.empty()) {
     const report::Page page = audit::audit_report(result, outcomes, arguments.input, command_of(arguments));
-    if (!report::write_page(arguments.report, page)) return cannot_write(arguments.report + "/report.html");
+    if (!report::write_page(arguments.report, page))
+      return cannot_write({"--report", arguments.report + "/report.html"});
   }
   const std::string text =
       arguments.json

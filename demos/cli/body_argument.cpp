@@ -101,6 +101,13 @@ const std::string& standard_input() {
   return bytes;
 }
 
+/// The words of a reader name an option of `pdepth query` behind its limit.
+std::string without_option(std::string words) {
+  constexpr std::string_view kOption = " (--max-vertices)";
+  const std::size_t at = words.find(kOption);
+  return at == words.npos ? words : words.erase(at, kOption.size());
+}
+
 /// A word that names no file, but may have been meant as a primitive: "Box:1,1,1", "cube:1", "sphere".
 void refuse_unknown_primitive(const std::string& word) {
   std::error_code missing;
@@ -116,13 +123,12 @@ void refuse_unknown_primitive(const std::string& word) {
 query::MeshPoints read_points_of(const std::string& word) {
   if (word != "-") {
     refuse_unknown_primitive(word);
-    refuse_folder(word);
-    return query::read_mesh_points(word, kLimits.max_vertices, query::kMaxMeshBytes);
+    return read_mesh_argument(word, kLimits.max_vertices);
   }
   try {
     return query::read_mesh_bytes(standard_input(), kLimits.max_vertices);
   } catch (const query::Refusal& refusal) {
-    query::refuse(refusal.code, kStandardInput + (": " + refusal.message), "");
+    query::refuse(refusal.code, kStandardInput + (": " + without_option(refusal.message)), "");
   }
 }
 
@@ -147,6 +153,18 @@ query::NamedShape shape_of_mesh(const BodyArgument& argument) {
 }
 
 }  // namespace
+
+query::MeshPoints read_mesh_argument(const std::string& file, std::int64_t most_points) {
+  std::error_code missing;  // a missing file is refused by its reader
+  if (std::filesystem::is_directory(file, missing)) {
+    query::refuse("unreadable_file", file + ": a folder; a file is expected", "");
+  }
+  try {
+    return query::read_mesh_points(file, most_points, query::kMaxMeshBytes);
+  } catch (const query::Refusal& refusal) {
+    query::refuse(refusal.code, without_option(refusal.message), refusal.where);
+  }
+}
 
 bool names_mesh(const std::string& word) { return find_primitive(word) == nullptr; }
 

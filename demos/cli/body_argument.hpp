@@ -2,6 +2,7 @@
 /// A body as a word of the command line: a mesh's file, `-` for a mesh on standard input, or a primitive.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -13,7 +14,8 @@ namespace pd::cli {
 
 /// The help's list of the words that name a body.
 inline constexpr const char* kBodyWords =
-    R"(A body is a mesh's file (OBJ, STL, PLY, OFF, glTF, XYZ or PCD), - for a mesh on standard input, or a primitive about the origin:
+    R"(A body is a mesh's file (OBJ, STL, PLY, OFF, glTF, XYZ or PCD), - for an OBJ, STL, PLY, OFF or PCD on standard input,
+or a primitive about the origin:
   box:X,Y,Z        half extents
   sphere:R         radius
   ellipsoid:X,Y,Z  radii
@@ -28,6 +30,9 @@ struct BodyArgument {
 
 /// True unless the word is a primitive.
 [[nodiscard]] bool names_mesh(const std::string& word);
+
+/// Reads a mesh's file of at most so many points. @throws query::Refusal that begins with the file's name
+[[nodiscard]] query::MeshPoints read_mesh_argument(const std::string& file, std::int64_t most_points);
 
 /// The solid of a mesh that is closed and not convex; null for other bodies. @throws query::Refusal that names the
 /// fault of a mesh with holes, or one that crosses itself

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "body_argument.hpp"
 #include "commands.hpp"
 #include "mesh/hull_note.hpp"
 #include "mesh/mesh_file.hpp"
@@ -71,8 +72,7 @@ struct CheckedMesh {
 };
 
 CheckedMesh read_checked(const std::string& file) {
-  refuse_folder(file);
-  query::MeshPoints mesh = query::read_mesh_points(file, kMostChecked, query::kMaxMeshBytes);
+  query::MeshPoints mesh = read_mesh_argument(file, kMostChecked);
   const auto refuse = [&](const Error& error) {
     query::refuse(to_string(error.code), file + ": " + error.message, error.where);
   };
@@ -287,7 +287,9 @@ bool applies(const std::string& word, const CheckedMesh& checked) {
   for (std::size_t f = 0; f < kMeshFaults; ++f) {
     if (word == to_string(static_cast<MeshFault>(f))) return report.counts[f] > 0;
   }
-  query::refuse("bad_value", "--fail-on: unknown word \"" + word + "\"; `pdepth check --help` lists them", "");
+  std::string known = "solid, not_convex, duplicate_points";
+  for (std::size_t f = 0; f < kMeshFaults; ++f) known += ", " + std::string(to_string(static_cast<MeshFault>(f)));
+  query::refuse("bad_value", "--fail-on: there is no \"" + word + "\"; known: " + known, "");
 }
 
 int run_check(const CheckArguments& arguments) {

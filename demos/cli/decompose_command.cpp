@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "body_argument.hpp"
 #include "commands.hpp"
 #include "files/decimal_number.hpp"
 #include "mesh/mesh_file.hpp"
@@ -162,12 +163,11 @@ void print_json(const DecomposeArguments& arguments, const Outcome& outcome) {
 }
 
 int run_decompose(const DecomposeArguments& arguments) {
-  refuse_to_overwrite({arguments.input}, arguments.output, "--output");
+  check_outputs({arguments.input}, {{"--output", arguments.output}});
   if (arguments.max_parts < 1) query::refuse("bad_value", "--max-parts: must be 1 or more", "");
   if (arguments.max_steps < 1) query::refuse("bad_value", "--max-steps: must be 1 or more", "");
   Progress progress("reading " + arguments.input);
-  refuse_folder(arguments.input);
-  query::MeshPoints mesh = query::read_mesh_points(arguments.input, kMostMeshPoints, query::kMaxMeshBytes);
+  query::MeshPoints mesh = read_mesh_argument(arguments.input, kMostMeshPoints);
   const query::SolidWish wish{.always = true,
                               .turn_faces = arguments.turn_faces,
                               .hull_words = "`pdepth simplify`",
@@ -188,11 +188,10 @@ int run_decompose(const DecomposeArguments& arguments) {
   const query::Stopwatch watch;
   const auto found = decompose(*solid, settings);
   if (!found) {
-    query::refuse(to_string(found.error().code), arguments.input + ": " + found.error().message, found.error().where);
+    query::refuse(to_string(found.error().code), arguments.input + ": " + found.error().message, "");
   }
   if (!write_whole_file(arguments.output, obj_of(*found, arguments))) {
-    complain("{} cannot be written", arguments.output);
-    return kFailed;
+    return cannot_write({"--output", arguments.output});
   }
   const std::int64_t nanoseconds = watch.nanoseconds();
   progress.end();

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cctype>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -13,10 +14,10 @@
 #include "support/complain.hpp"
 #include "support/demo_options.hpp"
 #include "support/refusal.hpp"
+#include "usage.hpp"
 #ifdef PDEPTH_WITH_DEMOS
 #include "report/page.hpp"
 #include "support/demo_registry.hpp"
-#include "usage.hpp"
 #endif
 
 namespace pd::cli {
@@ -162,7 +163,9 @@ Examples:
                       "Make a page: DIR/report.html, with the demo's files in DIR/NAME beside it");
   command->add_option("--solver", options.solver, "The solver shown first")
       ->check(one_of({"exact", "approx", "bullet-epa", "bullet-minkowski"}));
-  command->add_option("--seed", options.seed, "Seed of what is random")->capture_default_str();
+  command->add_option("--seed", options.seed, "Seed of what is random")
+      ->check(number_between(std::int64_t{0}, std::int64_t{1} << 53))
+      ->capture_default_str();
   command->add_option("--trace", options.trace, "A search that `pdepth depth --trace` wrote, drawn (difference)");
   command->add_flag("--video", options.video, "Also write an H.264 film (needs ffmpeg)");
   command->add_flag("--force", options.force, "Replace files that are already there");

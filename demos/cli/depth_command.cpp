@@ -49,8 +49,8 @@ Examples:
 struct DepthArguments {
   std::string file_a;
   std::string file_b;
-  std::string pose_a;
-  std::string pose_b;
+  std::string pose_a = "0,0,0";
+  std::string pose_b = "0,0,0";
   std::string direction;
   std::vector<double> margins;  ///< none, one for both, or one each
   std::string method = "auto";
@@ -63,7 +63,6 @@ struct DepthArguments {
 };
 
 Pose parse_pose(const std::string& text, const std::string& option) {
-  if (text.empty()) return {};
   const std::vector<double> n = parse_numbers(text, option);
   const auto pose = [&]() -> Expected<Pose> {
     if (n.size() == 3) return Pose::from_matrix(Mat3::Identity(), {n[0], n[1], n[2]});
@@ -224,14 +223,11 @@ int draw_picture(const DepthArguments& arguments, [[maybe_unused]] const query::
 #endif
 }
 
-/// @return whether the file is complete.
-bool write_trace(const std::string& file, const query::SearchRecorder& recorder) {
-  if (!write_whole_file(file, recorder.lines())) {
-    complain("{} cannot be written", file);
-    return false;
-  }
+/// @return an exit code
+int write_trace(const std::string& file, const query::SearchRecorder& recorder) {
+  if (!write_whole_file(file, recorder.lines())) return cannot_write({"--trace", file});
   if (recorder.steps() == 0) complain("no polytope was expanded: {} holds no steps (try --method expansion)", file);
-  return true;
+  return kDone;
 }
 
 /// Both are for two polytopes without margins.
@@ -414,8 +410,7 @@ int run_parts(const DepthArguments& arguments, Progress& progress) {
 }
 
 int run_depth(const DepthArguments& arguments) {
-  refuse_to_overwrite({arguments.file_a, arguments.file_b}, arguments.trace, "--trace");
-  refuse_to_overwrite({arguments.file_a, arguments.file_b}, arguments.picture, "--picture");
+  check_outputs({arguments.file_a, arguments.file_b}, {{"--trace", arguments.trace}, {"--picture", arguments.picture}});
   Progress progress(fmt::format("reading {} and {}", arguments.file_a, arguments.file_b));
   if (arguments.parts) return run_parts(arguments, progress);
   if (!arguments.hull && !(arguments.file_a == "-" && arguments.file_b == "-")) {
@@ -446,7 +441,7 @@ int run_depth(const DepthArguments& arguments) {
   progress.end();
   if (recorder) {
     recorder->add_answer(result, pair, nanoseconds);
-    if (!write_trace(arguments.trace, *recorder)) return kFailed;
+    if (const int code = write_trace(arguments.trace, *recorder); code != kDone) return code;
   }
   if (arguments.json) {
     print_object([&](auto& writer) {

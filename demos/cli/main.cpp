@@ -47,6 +47,7 @@ Exit codes:
   3    for `audit`: a condition of --fail-on does not hold; for `check`: a fault of --fail-on is there;
        for `decompose`: the error was not reached
   130  stopped by Ctrl-C
+  141  in a pipe, the program that reads the output has ended, as `head` does (the signal SIGPIPE)
 
 `pdepth SUBCOMMAND --help` says more; `pdepth help --man FOLDER` writes manual pages, and
 `pdepth help --completion bash` prints a script that completes what is typed.)";
@@ -71,6 +72,17 @@ bool asks_for_manual(const std::vector<std::string>& words) {
          (words[1] == "--man" || (words[1] == "--completion" && words[2] == "bash"));
 }
 
+/// The complaint about `help ...`; empty where nothing is wrong.
+std::string wrong_in_help(const std::vector<std::string>& words) {
+  if (words.size() < 2 || words[0] != "help" || asks_for_manual(words)) return {};
+  if (words[1] == "--man") return "--man needs one folder for the pages";
+  if (words[1] == "--completion") return "--completion takes one word: bash";
+  if (words[1].starts_with('-') && words[1] != "--help" && words[1] != "-h") {
+    return "help has no option " + words[1] + "; it takes the name of a subcommand, --man or --completion";
+  }
+  return words.size() > 2 ? words[2] + " is one word too many behind `help`" : "";
+}
+
 int write_manual(const CLI::App& app, const std::vector<std::string>& words) {
   if (words[1] == "--man") return pd::cli::write_manual_pages(app, words[2]);
   fmt::print("{}", pd::cli::bash_completion(app));
@@ -78,11 +90,9 @@ int write_manual(const CLI::App& app, const std::vector<std::string>& words) {
 }
 
 /// The words that were typed, with `help X` as `X --help`.
-std::vector<std::string> words_of(int argc, char** argv) {
-  std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+std::vector<std::string> words_of(std::vector<std::string> words) {
   if (words.empty() || words.front() != "help" || asks_for_manual(words)) return words;
   words.erase(words.begin());
-  if (words.size() > 1) words.resize(1);
   words.emplace_back("--help");
   return words;
 }
@@ -109,13 +119,26 @@ void hold_standard_streams() {
   }
 }
 
+/// @return an exit code
+int work(const pd::cli::Action& action) {
+  try {
+    return action();
+  } catch (const pd::query::Refusal& refusal) {
+    pd::complain("{}{}", refusal.message, refusal.where.empty() ? "" : " at " + refusal.where);
+    return pd::cli::kBadUsage;
+  } catch (const std::exception& error) {
+    // `main` says it of standard output.
+    if (std::ferror(stdout) == 0) pd::complain("{}", error.what());
+    return pd::cli::kFailed;
+  }
+}
+
 /// Parses and runs. @return an exit code
 int run(CLI::App& app, std::vector<std::string> words, const pd::cli::Action& action) {
   if (words.empty()) {
     fmt::print("{}", app.help());
     return pd::cli::kBadUsage;
   }
-  if (asks_for_manual(words)) return write_manual(app, words);
   const std::string& first = words.front();
   const std::string meant = pd::cli::nearest_word(subcommands(app), first);
   if (!first.starts_with('-') && meant != first) {
@@ -136,22 +159,15 @@ int run(CLI::App& app, std::vector<std::string> words, const pd::cli::Action& ac
     fmt::print("{}", out.str());
     return pd::cli::kDone;
   }
-  try {
-    return action();
-  } catch (const pd::query::Refusal& refusal) {
-    pd::complain("{}{}", refusal.message, refusal.where.empty() ? "" : " at " + refusal.where);
-    return pd::cli::kBadUsage;
-  } catch (const std::exception& error) {
-    pd::complain("{}", error.what());
-    return pd::cli::kFailed;
-  }
+  return pd::cli::complain_of_empty_word(app) ? pd::cli::kBadUsage : work(action);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   hold_standard_streams();
-  const std::vector<std::string> words = words_of(argc, argv);
+  const std::vector<std::string> typed(argv + std::min(argc, 1), argv + argc);
+  const std::vector<std::string> words = words_of(typed);
   hand_over_pictures(words, argv);
   // Whole lines and whole files are written at once, so that what stands there by then is complete.
   std::signal(SIGINT, [](int) { std::_Exit(pd::cli::kInterrupted); });
@@ -172,7 +188,14 @@ int main(int argc, char** argv) {
   pd::cli::add_audit_command(app, action);
   pd::cli::add_accuracy_command(app, action);
   pd::cli::add_demo_command(app, action);
-  const int code = run(app, words, action);
+  int code = pd::cli::kBadUsage;
+  if (const std::string wrong = wrong_in_help(typed); !wrong.empty()) {
+    pd::complain("{}", wrong);
+  } else if (asks_for_manual(typed)) {
+    code = work([&] { return write_manual(app, typed); });
+  } else {
+    code = run(app, words, action);
+  }
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
   pd::complain("the answer cannot be written: {}", std::strerror(errno));
   return pd::cli::kFailed;

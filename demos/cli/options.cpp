@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
+#include <stdexcept>
 #include <system_error>
 
 #include "commands.hpp"
@@ -45,24 +48,70 @@ std::string refuse_other_meshes(const std::string& file) {
   std::string extension = std::filesystem::path(file).extension();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension.empty() || extension == ".obj" ? "" : file + ": meshes are written as OBJ: name it *.obj";
+  return (extension.empty() && file != "-") || extension == ".obj"
+             ? ""
+             : file + ": meshes are written as OBJ: name it *.obj";
 }
 
-void refuse_folder(const std::string& word) {
-  std::error_code missing;  // a missing file is refused by its reader
-  if (std::filesystem::is_directory(word, missing)) {
-    query::refuse("unreadable_file", word + ": a folder; a file is expected", "");
+namespace {
+
+/// Words for a name under which no file can be written; empty where nothing is in the way.
+std::string in_the_way(const std::filesystem::path& file) {
+  std::error_code missing;
+  if (std::filesystem::is_directory(file, missing)) return "a folder has this name";
+  const std::filesystem::path folder = file.parent_path();
+  if (folder.empty() || std::filesystem::is_directory(folder, missing)) return {};
+  return "there is no folder " + folder.string();
+}
+
+bool name_one_file(const std::string& a, const std::string& b) {
+  std::error_code missing;
+  if (std::filesystem::exists(a, missing) && !std::filesystem::is_regular_file(a, missing)) return false;
+  const auto place = [&](const std::string& file) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(file, missing), missing);
+  };
+  return place(a) == place(b);
+}
+
+std::string not_written(const Output& output, const std::string& reason) {
+  return fmt::format("{} cannot be written: {} ({})", output.file, reason, output.option);
+}
+
+void check_output(std::initializer_list<std::string> inputs, const Output& output) {
+  const auto refuse = [&](const std::string& words) {
+    query::refuse("bad_value", std::string(output.option) + ": " + output.file + words, "");
+  };
+  if (output.file == "-") refuse(" names no file; /dev/stdout is standard output");
+  for (const std::string& input : inputs) {
+    std::error_code missing;  // equal to nothing
+    if (!input.empty() && std::filesystem::equivalent(input, output.file, missing)) {
+      refuse(" is the input itself: write to another file");
+    }
+  }
+  if (const std::string reason = in_the_way(output.file); !reason.empty()) {
+    throw std::runtime_error(not_written(output, reason));
   }
 }
 
-void refuse_to_overwrite(std::initializer_list<std::string> inputs, const std::string& output, const char* option) {
-  for (const std::string& input : inputs) {
-    std::error_code missing;  // equal to nothing
-    if (!output.empty() && !input.empty() && std::filesystem::equivalent(input, output, missing)) {
-      query::refuse("bad_value", std::string(option) + ": " + output + " is the input itself: write to another file",
+}  // namespace
+
+void check_outputs(std::initializer_list<std::string> inputs, std::initializer_list<Output> outputs) {
+  for (const Output& output : outputs) {
+    if (output.file.empty()) continue;
+    check_output(inputs, output);
+    for (const Output* other = outputs.begin(); other != &output; ++other) {
+      if (other->file.empty() || !name_one_file(other->file, output.file)) continue;
+      query::refuse("bad_value", fmt::format("{} and {} name one file, {}", other->option, output.option, output.file),
                     "");
     }
   }
+}
+
+int cannot_write(const Output& output) {
+  const int number = errno;
+  const std::string reason = in_the_way(output.file);
+  complain("{}", not_written(output, reason.empty() ? std::strerror(number) : reason));
+  return kFailed;
 }
 
 void print_row(std::string_view name, const std::string& value) { fmt::print("  {:<13} {}\n", name, printable(value)); }

@@ -22,12 +22,19 @@ int refuse_picture(const std::string& file);
 /// A check for options: hulls and parts are written as OBJ, whatever the file is called.
 [[nodiscard]] std::string refuse_other_meshes(const std::string& file);
 
-/// A Refusal where a mesh's file is expected and the word names a folder.
-void refuse_folder(const std::string& word);
+/// A file that an option names for writing. An empty name is no file.
+struct Output {
+  std::string_view option;
+  const std::string& file;
+};
 
-/// Refuses to write over what is read: a Refusal where an output is one of the inputs, by whatever name. `option` is
-/// named in it. An empty name is no file.
-void refuse_to_overwrite(std::initializer_list<std::string> inputs, const std::string& output, const char* option);
+/// Looks at the outputs of a command before its work. No folder is made for a file: where it is missing, or has the
+/// file's name, the work cannot be finished (std::runtime_error). @throws query::Refusal where an output is one of the
+/// inputs, by whatever name, where two options name one file, and for "-"
+void check_outputs(std::initializer_list<std::string> inputs, std::initializer_list<Output> outputs);
+
+/// Says why an output could not be written, by errno where its name is good. @return kFailed
+int cannot_write(const Output& output);
 
 /// A line of an answer for people: its name and its value.
 void print_row(std::string_view name, const std::string& value);

@@ -38,7 +38,7 @@ turned round. Curves become polylines: no point of one lies farther than --flatn
 Without --direction the least move over all directions is found. With --complete Q shall get away for good:
   --complete=straight  going on straight along the move's own direction, for ever
   --complete=escape    by any motion: Q comes to where a way leads out, not into a hole that it fits in
---complete alone is straight with --direction, escape without.
+--complete alone (by-direction) is straight with --direction, escape without.
 
 If Q fits exactly into a hole or a notch, the place has no area and is no way out: the answer says that Q fits, and --seats
 lists all such displacements.
@@ -83,6 +83,7 @@ Point2 parse_point(const std::string& text, const std::string& option) {
   }
   for (const double x : n) {
     if (!std::isfinite(x)) query::refuse("non_finite", option + ": the numbers must be finite", "");
+    if (std::abs(x) > 1e300) query::refuse("out_of_range", option + ": the numbers must be at most 1e300", "");
   }
   return {n[0], n[1]};
 }
@@ -259,7 +260,7 @@ int draw_picture(const PolygonArguments& arguments, const PolygonPair& pair, con
 std::string file_of(const std::string& argument) { return argument.substr(0, argument.rfind('#')); }
 
 int run_polygon(const PolygonArguments& arguments) {
-  refuse_to_overwrite({file_of(arguments.file_p), file_of(arguments.file_q)}, arguments.picture, "--picture");
+  check_outputs({file_of(arguments.file_p), file_of(arguments.file_q)}, {{"--picture", arguments.picture}});
   const PolygonPair pair = read_pair(arguments);
   const query::Stopwatch watch;
   const Expected<PolygonDifference> r = PolygonDifference::of(pair.p.polygon, pair.q.polygon);
@@ -295,7 +296,9 @@ void add_polygon_command(CLI::App& app, Action& action) {
   command
       ->add_flag(fmt::format("--complete{{{}}}", kByDirection), arguments->complete,
                  "Get away for good, not only clear of P: --complete=straight or --complete=escape")
-      ->check(one_of({kStraight, kEscape, kByDirection}).description(""));
+      ->check([words = one_of({kStraight, kEscape})](
+                  const std::string& word) { return word == kByDirection ? std::string() : words(word); },
+              "");
   command->add_option("--place-q", arguments->place, "Displacement X,Y of Q before it is looked at [0,0]");
   command
       ->add_option("--flatness", arguments->flatness, "Greatest distance of a curve from its chords [1e-4 of the size]")

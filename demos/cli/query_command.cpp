@@ -15,6 +15,7 @@
 #include "commands.hpp"
 #include "line_input.hpp"
 #include "mesh/mesh_file.hpp"
+#include "options.hpp"
 #include "progress.hpp"
 #include "protocol/handlers.hpp"
 #include "protocol/schema.hpp"
@@ -84,6 +85,7 @@ int run_query(QueryArguments arguments) {
   if (arguments.list || arguments.schema) return kDone;
   query::StreamSettings& settings = arguments.settings;
   settings.threads = number_of_threads(settings.threads);
+  check_outputs({}, {{"--record", settings.record.path}});
   const InputFile input(arguments.input);
   if (!input.good()) return cannot_read(arguments.input, errno);
   if (is_plainly_mesh(input, arguments.input)) return refuse_mesh(arguments.input);
@@ -109,9 +111,11 @@ int run_query(QueryArguments arguments) {
     case query::StreamEnd::unreadable:
       return cannot_read(arguments.input, reason);
     case query::StreamEnd::unwritable:
-      complain("the answers{} cannot be written: {}", settings.record.path.empty() ? "" : " or the record",
-               std::strerror(reason));
+      complain("the answers cannot be written: {}", std::strerror(reason));
       return kFailed;
+    case query::StreamEnd::unrecorded:
+      errno = reason;
+      return cannot_write({"--record", settings.record.path});
   }
   return kFailed;
 }
@@ -123,9 +127,13 @@ void add_query_command(CLI::App& app, Action& action) {
   query::StreamSettings& settings = arguments->settings;
   CLI::App* command = app.add_subcommand("query", "Answer queries of the line protocol, one JSON object a line");
   command->footer(kQueryFooter);
-  command->add_option("FILE", arguments->input, "Lines to answer; - is standard input")->capture_default_str();
-  command->add_flag("--list", arguments->list, "Name the queries and what they ask for");
-  command->add_flag("--schema", arguments->schema, "Print the JSON Schema of lines, answers, records and error codes");
+  CLI::Option* const file =
+      command->add_option("FILE", arguments->input, "Lines to answer; - is standard input")->capture_default_str();
+  CLI::Option* const list = command->add_flag("--list", arguments->list, "Name the queries and what they ask for");
+  command->add_flag("--schema", arguments->schema, "Print the JSON Schema of lines, answers, records and error codes")
+      ->excludes(list)
+      ->excludes(file);
+  list->excludes(file);
   add_threads_option(*command, settings.threads, "answer");
   add_limit_options(*command, settings.limits);
   command

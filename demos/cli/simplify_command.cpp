@@ -4,11 +4,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "body_argument.hpp"
 #include "commands.hpp"
 #include "mesh/mesh_file.hpp"
 #include "options.hpp"
@@ -92,17 +94,15 @@ std::vector<Vec3> sample(const std::vector<Vec3>& points, std::size_t most) {
 }
 
 int run_simplify(const SimplifyArguments& arguments) {
-  refuse_to_overwrite({arguments.input}, arguments.output, "--output");
-  refuse_to_overwrite({arguments.input, arguments.output}, arguments.picture, "--picture");
+  check_outputs({arguments.input}, {{"--output", arguments.output}, {"--picture", arguments.picture}});
   Progress progress("reading " + arguments.input);
-  refuse_folder(arguments.input);
-  const query::MeshPoints scan = query::read_mesh_points(arguments.input, kMostPoints, query::kMaxMeshBytes);
+  const query::MeshPoints scan = read_mesh_argument(arguments.input, kMostPoints);
   progress.begin(fmt::format("looking for a hull of {} points", scan.points.size()));
   const query::Stopwatch watch;
   std::vector<dimension::Vector<3>> points(scan.points.begin(), scan.points.end());
   const auto body = dimension::Body<3>::from_points(std::move(points));
   if (!body) {
-    query::refuse(to_string(body.error().code), arguments.input + ": " + body.error().message, body.error().where);
+    query::refuse(to_string(body.error().code), arguments.input + ": " + body.error().message, "");
   }
   const dimension::Side side = arguments.side == "inner" ? dimension::Side::inner : dimension::Side::outer;
   const auto small = dimension::approximate_body<3>(*body, arguments.epsilon, dimension::Representation::points, side);
@@ -111,10 +111,7 @@ int run_simplify(const SimplifyArguments& arguments) {
   const auto hull = ConvexPolytope::from_points(vertices);
   if (!hull) query::refuse(to_string(hull.error().code), hull.error().message, hull.error().where);
   const double milliseconds = static_cast<double>(watch.nanoseconds()) / 1e6;
-  if (!write_obj(*hull, arguments)) {
-    complain("{} cannot be written", arguments.output);
-    return kFailed;
-  }
+  if (!write_obj(*hull, arguments)) return cannot_write({"--output", arguments.output});
   constexpr std::size_t kChecked = 200'000;
   progress.begin(fmt::format("measuring {} facets", hull->num_facets()));
   const Excess excess = measure(*hull, sample(scan.points, kChecked));
@@ -145,7 +142,8 @@ void add_simplify_command(CLI::App& app, Action& action) {
   command->add_option("-o,--output", arguments->output, "The hull, as OBJ")
       ->required()
       ->check(refuse_other_meshes, "FILE.obj");
-  command->add_option("--epsilon", arguments->epsilon, "Error, relative to the scan's extent, in [1e-6, 1)")
+  command->add_option("--epsilon", arguments->epsilon, "Error, relative to the scan's extent")
+      ->check(number_check(1e-6, std::nextafter(1.0, 0.0), "FLOAT in [1e-06, 1)"))
       ->capture_default_str();
   command->add_option("--side", arguments->side, "Encloses the scan, or is enclosed by it")
       ->check(one_of({"outer", "inner"}))

@@ -33,8 +33,10 @@ std::size_t letters_apart(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-std::string what_is_right(double low, double high) {
-  if (high < kInfinity) return fmt::format("must lie in [{}, {}]", low, high);
+/// `shown` ends on the limits, as "INT in [1, 9]", where there are two.
+std::string what_is_right(double low, std::string_view shown) {
+  const std::size_t limits = shown.find(" in ");
+  if (limits != shown.npos) return "must lie" + std::string(shown.substr(limits));
   return low > 0 ? "must be greater than 0" : "must be 0 or more";
 }
 
@@ -93,7 +95,20 @@ std::string unconverted(const std::string& said) {
                      fraction ? word + " must be a whole number" : "\"" + word + "\" is no number");
 }
 
-std::string words_for(const CLI::App& command, const CLI::ParseError& error) {
+/// An option that stands before its subcommand.
+std::string misplaced_option(const CLI::App& app, const std::string& word) {
+  const CLI::App& command = asked_command(app);
+  const std::string name = word.substr(0, word.find('='));
+  const std::vector<std::string> known = long_options(command);
+  if (&command == &app || std::find(known.begin(), known.end(), name) == known.end()) return unknown_option(app, word);
+  return fmt::format("{} belongs behind `{}`", name, command.get_name());
+}
+
+std::string words_for(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App& command = asked_command(app);
+  const std::vector<std::string> early = app.remaining();
+  const auto misplaced = std::find_if(early.begin(), early.end(), looks_like_option);
+  if (misplaced != early.end()) return misplaced_option(app, *misplaced);
   const std::vector<std::string> rest = command.remaining();
   const auto option = std::find_if(rest.begin(), rest.end(), looks_like_option);
   if (option != rest.end()) return unknown_option(command, *option);
@@ -134,11 +149,11 @@ std::string nearest_word(const std::vector<std::string>& known, std::string_view
 }
 
 CLI::Validator number_check(double low, double high, const std::string& shown) {
-  return {[low, high](std::string& word) -> std::string {
+  return {[low, high, shown](std::string& word) -> std::string {
             double number = 0;
             if (!query::parse_decimal(word, number) || std::isnan(number)) return "\"" + word + "\" is no number";
             const bool right = number >= low && number <= high;
-            return right ? "" : word + " " + what_is_right(low, high);
+            return right ? "" : word + " " + what_is_right(low, shown);
           },
           shown};
 }
@@ -160,11 +175,29 @@ CLI::Validator one_of(std::vector<std::string> words) {
           std::move(shown)};
 }
 
-void complain_of_usage(const CLI::App& app, const CLI::ParseError& error) {
+namespace {
+
+void complain_of(const CLI::App& app, const std::string& words) {
   const CLI::App& command = asked_command(app);
-  complain("{}", words_for(command, error));
+  complain("{}", words);
   const std::string name = &command == &app ? "" : " " + command.get_name();
   fmt::print(stderr, "`pdepth{} --help` shows what it takes.\n", name);
+}
+
+}  // namespace
+
+void complain_of_usage(const CLI::App& app, const CLI::ParseError& error) { complain_of(app, words_for(app, error)); }
+
+bool complain_of_empty_word(const CLI::App& app) {
+  const CLI::App& command = asked_command(app);
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& word : option->results()) {
+      if (!word.empty()) continue;
+      complain_of(app, about_option(command, option->get_name(), "is empty"));
+      return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace pd::cli

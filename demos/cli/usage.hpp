@@ -36,4 +36,7 @@ template <class Number>
 /// Says on standard error what the parser refused, and where help stands. `app` has parsed the words.
 void complain_of_usage(const CLI::App& app, const CLI::ParseError& error);
 
+/// Says so where a word that was typed is empty, as a shell's variable that is not set. @return whether one is
+bool complain_of_empty_word(const CLI::App& app);
+
 }  // namespace pd::cli

@@ -58,7 +58,15 @@ MeshPoints require_vertices(MeshPoints mesh) {
 }  // namespace
 
 MeshPoints read_mesh_bytes(const std::string& bytes, std::int64_t max_vertices) {
-  return require_vertices(read_by_first_bytes(bytes, max_vertices));
+  if (bytes.empty()) refuse("unreadable_file", "it is empty", "");
+  MeshPoints mesh = read_by_first_bytes(bytes, max_vertices);
+  if (mesh.points.empty()) {
+    refuse(
+        "unreadable_file",
+        "no vertices; a mesh without a name is OBJ, OFF, PLY, STL or PCD, other formats are told by their file's name",
+        "");
+  }
+  return mesh;
 }
 
 bool is_mesh_name(const std::filesystem::path& path) {
@@ -71,6 +79,7 @@ MeshPoints read_mesh_points(const std::string& path, std::int64_t max_vertices, 
   if (path == "-") {
     refuse("unreadable_file", "-: a file is expected; `pdepth depth` alone reads a mesh from standard input", "");
   }
+  if (path.empty()) refuse("unreadable_file", "the name of the file is empty", "");
   if (!is_mesh_name(path)) {
     refuse("unreadable_file", path + ": the file ending must be .obj, .off, .ply, .stl, .gltf, .glb, .xyz or .pcd", "");
   }

@@ -75,7 +75,7 @@ MeshBody body_of_mesh(MeshPoints mesh, const std::string& name, const SolidWish&
     refuse(
         to_string(solid.error().code),
         name + ": " + solid.error().message + "; or ask for the convex hull of its vertices (" + wish.hull_words + ")",
-        solid.error().where);
+        "");
   }
   return {std::make_shared<const MeshSolid>(*std::move(solid)), nullptr};
 }

@@ -109,7 +109,9 @@ TEST_F(Newcomer, ReadsAMeshFromStandardInput) {
   EXPECT_EQ(json_of("pdepth depth - box:1,1,1 --hull --json < flat.stl").at("class"), "overlapping");
   EXPECT_EQ(shell("pdepth depth - - < cube.obj"), 2);
   EXPECT_EQ(shell("pdepth depth - box:1,1,1 < /dev/null"), 2);
-  EXPECT_TRUE(says("standard input: the file holds no vertices")) << read("err");
+  EXPECT_TRUE(says("standard input: it is empty")) << read("err");
+  EXPECT_EQ(shell("echo 1 2 3 | pdepth depth - box:1,1,1"), 2);
+  EXPECT_TRUE(says("standard input: no vertices; a mesh without a name is OBJ, OFF")) << read("err");
   EXPECT_EQ(shell("echo '{\"asset\":{}}' | pdepth depth - box:1,1,1"), 2);
   EXPECT_TRUE(says("standard input: glTF")) << read("err");
 }
@@ -152,6 +154,11 @@ TEST_F(Newcomer, IsToldWhatIsWrongAndWhatWouldBeRight) {
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n# not the text of an STL\n");
   write("list.json", "[[0,0],[1,0],[1,1]]\n");
   write("empty.off", "");
+  write("big.ply", "ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nend_header\n");
+  write("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\n");
+  write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n");
+  write("square.json", R"({"outer":[[0,0],[1,0],[1,1],[0,1]]})");
+  write("bow.json", R"({"outer":[[0,0],[4,4],[4,0],[0,4]]})");
   std::filesystem::create_directory(path() / "folder");
   constexpr Mistake kMistakes[] = {
       {"pdepth deph a b", R"(no subcommand "deph"; did you mean "depth"?)"},
@@ -190,6 +197,41 @@ TEST_F(Newcomer, IsToldWhatIsWrongAndWhatWouldBeRight) {
       {"pdepth polygon list.json list.json", R"(the file must be one JSON object, {"outer": [[x,y],...]})"},
       {"pdepth minimise none.jsonl --predicate true", "none.jsonl: No such file"},
       {"pdepth accuracy --recorder none", "none: no recorder"},
+      {"pdepth accuracy --seed -1", "--seed: -1 must lie in [0, 9007199254740992]"},
+      {"pdepth accuracy --seed 99999999999999999999999", "must lie in [0, 9007199254740992]"},
+      {"pdepth demo difference --seed -1", "--seed: -1 must lie in [0, 9007199254740992]"},
+      {"pdepth depth box:1,1,1 sphere:1 --pose-b ''", "--pose-b is empty: Where B stands"},
+      {"pdepth depth box:1,1,1 sphere:1 --direction ''", "--direction is empty: How far A must move"},
+      {"pdepth depth box:1,1,1 sphere:1 --pose-b ,", "a pose is x,y,z with no rotation"},
+      {"pdepth depth '' box:1,1,1", "A is empty: Body that moves"},
+      {"pdepth query ''", "FILE is empty: Lines to answer"},
+      {"pdepth check ''", "FILE is empty: Mesh or points"},
+      {"pdepth --json depth box:1,1,1 sphere:1", "--json belongs behind `depth`"},
+      {"pdepth --jsn depth box:1,1,1 sphere:1", "there is no option --jsn"},
+      {"pdepth decompose cube.obj -o -", "-: meshes are written as OBJ"},
+      {"pdepth depth cube.obj box:1,1,1 --trace -", "--trace: - names no file; /dev/stdout is standard output"},
+      {"pdepth depth cube.obj cube.obj --trace a.png --picture ./a.png",
+       "--trace and --picture name one file, ./a.png"},
+      {"pdepth simplify cube.obj --epsilon 2 -o o.obj", "--epsilon: 2 must lie in [1e-06, 1)"},
+      {"pdepth simplify cube.obj --epsilon 1 -o o.obj", "--epsilon: 1 must lie in [1e-06, 1)"},
+      {"pdepth simplify cube.obj --epsilon 1e-7 -o o.obj", "--epsilon: 1e-7 must lie in [1e-06, 1)"},
+      {"pdepth simplify flat.obj -o o.obj",
+       "flat.obj: the body is flat, or within rounding of a flat one; it must have an interior in R^3\n"},
+      {"pdepth decompose points.obj -o o.obj",
+       "there are points alone; or ask for the convex hull of its vertices (`pdepth simplify`)\n"},
+      {"pdepth check cube.obj --fail-on closed", R"(there is no "closed"; known: solid, not_convex, duplicate_points)"},
+      {"pdepth check big.ply", "vertices; the limit is 50000000\n"},
+      {"pdepth depth big.ply cube.obj", "vertices; the limit is 50000000\n"},
+      {"pdepth polygon square.json square.json --complete=foo", R"(there is no "foo"; known: straight, escape)"
+                                                                "\n"},
+      {"pdepth polygon square.json square.json --place-q 1e308,0", "--place-q: the numbers must be at most 1e300"},
+      {"pdepth polygon bow.json square.json", "bow.json: outer[0], the edge from (0.0, 0.0) to (4.0, 4.0): the edges"},
+      {"pdepth help --man", "--man needs one folder"},
+      {"pdepth help --completion zsh", "--completion takes one word: bash"},
+      {"pdepth help --foo", "help has no option --foo"},
+      {"pdepth help depth x", "x is one word too many behind `help`"},
+      {"pdepth query --list x", "FILE and --list do not go together"},
+      {"pdepth query --list --schema", "--list and --schema do not go together"},
   };
   for (const Mistake& mistake : kMistakes) {
     EXPECT_EQ(shell(mistake.typed), 2) << mistake.typed;

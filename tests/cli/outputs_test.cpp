@@ -2,6 +2,7 @@
 /// What the command writes: whole or not at all, never over its own input, and nothing of a name that a terminal obeys.
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -88,6 +89,52 @@ TEST_F(Outputs, FullFilesAreOne) {
         "query lines.jsonl --record /dev/full", "simplify cube.obj -o /nowhere/small.obj"}) {
     EXPECT_EQ(run(arguments + std::string(" > out")), 1) << arguments << "\n" << read("err");
   }
+}
+
+TEST_F(Outputs, AMissingFolderIsNotMade) {
+  std::filesystem::create_directory(path() / "folder");
+  for (const std::string arguments :
+       {"depth cube.obj cube.obj --trace ", "depth cube.obj cube.obj --picture ", "simplify cube.obj -o ",
+        "simplify cube.obj -o small.obj --picture ", "decompose cube.obj -o ",
+        "polygon square.json square.json --picture ", "audit record.jsonl --csv ", "audit record.jsonl --junit ",
+        "query lines.jsonl --record "}) {
+    const std::string ending = arguments.ends_with("--picture ") ? ".png" : arguments.ends_with("-o ") ? ".obj" : "";
+    EXPECT_EQ(run(arguments + "none/x" + ending + " > out"), 1) << arguments;
+    EXPECT_NE(read("err").find("none/x" + ending + " cannot be written: there is no folder none (--"),
+              std::string::npos)
+        << arguments << read("err");
+    EXPECT_FALSE(std::filesystem::exists(path() / "none")) << arguments;
+    if (!ending.empty()) continue;
+    EXPECT_EQ(run(arguments + "folder > out"), 1) << arguments;
+    EXPECT_NE(read("err").find("folder cannot be written: a folder has this name (--"), std::string::npos)
+        << arguments << read("err");
+  }
+  EXPECT_EQ(run("simplify cube.obj -o /dev/full > out"), 1);
+  EXPECT_NE(read("err").find("/dev/full cannot be written: No space left on device (--output)"), std::string::npos)
+      << read("err");
+  for (const char* threads : {"", " --threads 2"}) {
+    EXPECT_EQ(run(std::string("query lines.jsonl --record /dev/full > out") + threads), 1);
+    EXPECT_NE(read("err").find("/dev/full cannot be written: No space left on device (--record)"), std::string::npos)
+        << read("err");
+  }
+}
+
+TEST_F(Outputs, AFullOutputIsSaidOnce) {
+  for (const char* arguments : {"query --schema", "query --list", "help --completion bash", "--licenses"}) {
+    EXPECT_EQ(run(arguments + std::string(" > /dev/full")), 1) << arguments;
+    const std::string said = read("err");
+    EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << arguments << said;
+    EXPECT_NE(said.find("No space left on device"), std::string::npos) << arguments << said;
+  }
+}
+
+TEST_F(Outputs, AReaderThatHasEnoughEndsTheCommand) {
+  const std::string command = "cd '" + path().string() +
+                              "' && bash -c 'set -o pipefail; yes \"$(cat lines.jsonl)\" | \"" PDEPTH_PROGRAM
+                              "\" query | head -1 > out'";
+  const int status = std::system(command.c_str());
+  EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : -1, 141);
+  EXPECT_NE(read("out").find("facets"), std::string::npos) << read("out");
 }
 
 TEST_F(Outputs, NoCommandWritesOverItsInput) {

@@ -44,11 +44,11 @@ LineRecorder::LineRecorder(RecordSettings settings) : settings_(std::move(settin
   file_ = ::open(settings_.path.c_str(), O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
   if (file_ < 0) file_ = ::open(settings_.path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);  // a pipe, or not to be read
   if (file_ < 0) {
-    good_ = false;
+    reason_ = errno;
     return;
   }
   const FileLock lock(file_);
-  good_ = !ends_within_a_line(file_) || write_all(file_, "\n");
+  if (ends_within_a_line(file_) && !write_all(file_, "\n")) reason_ = errno;
 }
 
 LineRecorder::~LineRecorder() {
@@ -63,9 +63,9 @@ void LineRecorder::keep(std::string_view line, const LineAnswer& answer, double 
   if (!every && !slow && !surprising) return;
   const std::string whole = std::string(line) + '\n';
   const std::scoped_lock lock(mutex_);
-  if (!good_) return;
+  if (!good()) return;
   const FileLock file_lock(file_);
-  good_ = write_all(file_, whole);
+  if (!write_all(file_, whole)) reason_ = errno;
 }
 
 }  // namespace pd::query

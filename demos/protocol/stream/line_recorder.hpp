@@ -29,8 +29,10 @@ class LineRecorder {
   LineRecorder(const LineRecorder&) = delete;
   LineRecorder& operator=(const LineRecorder&) = delete;
 
-  /// False when the file could not be opened or written; errno says why after the constructor.
-  [[nodiscard]] bool good() const { return settings_.path.empty() || good_; }
+  /// False when the file could not be opened or written.
+  [[nodiscard]] bool good() const { return reason_ == 0; }
+  /// The errno of the first failure.
+  [[nodiscard]] int reason() const { return reason_; }
   [[nodiscard]] bool active() const { return !settings_.path.empty(); }
 
   /// Keeps the line where the settings ask for it.
@@ -40,7 +42,7 @@ class LineRecorder {
   RecordSettings settings_;
   std::mutex mutex_;
   int file_ = -1;
-  bool good_ = false;
+  int reason_ = 0;
 };
 
 }  // namespace pd::query

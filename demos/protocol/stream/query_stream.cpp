@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
@@ -191,18 +192,24 @@ StreamEnd answer_together(LineSource& source, AnswerSink& sink, const Answerer& 
   return work.output_failed() ? StreamEnd::unwritable : end;
 }
 
+/// The recorder's own reason: another thread may have written, or another file since.
+StreamEnd unrecorded(const LineRecorder& recorder) {
+  errno = recorder.reason();
+  return StreamEnd::unrecorded;
+}
+
 }  // namespace
 
 StreamEnd answer_stream(int input, int output, const StreamSettings& settings) {
   LineSource source(input, settings.limits.max_line);
   AnswerSink sink(output, !is_regular_file(input) || !is_regular_file(output));
   LineRecorder recorder(settings.record);
-  if (!recorder.good()) return StreamEnd::unwritable;
+  if (!recorder.good()) return unrecorded(recorder);
   const Answerer answerer(settings, recorder);
   const StreamEnd end =
       settings.threads > 1 ? answer_together(source, sink, answerer, settings) : answer_alone(source, sink, answerer);
-  if (!sink.flush() || !recorder.good()) return StreamEnd::unwritable;
-  return end;
+  if (!sink.flush()) return StreamEnd::unwritable;
+  return recorder.good() ? end : unrecorded(recorder);
 }
 
 }  // namespace pd::query

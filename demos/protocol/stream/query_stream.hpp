@@ -11,7 +11,8 @@ namespace pd::query {
 enum class StreamEnd {
   answered,    ///< every line has its answer
   unreadable,  ///< the input failed half way; what came before is answered
-  unwritable,  ///< the answers, or the record of lines, cannot be written
+  unwritable,  ///< the answers cannot be written
+  unrecorded,  ///< the record of lines cannot be written; errno says why
 };
 
 struct StreamSettings {

@@ -1,5 +1,6 @@
 #include "pd/numeric/whole_file.hpp"
 
+#include <cerrno>
 #include <cstdint>
 #include <random>
 #include <system_error>
@@ -39,6 +40,8 @@ WholeFile::WholeFile(const std::filesystem::path& path) : target_(path) {
     // A file that nobody may write is not replaced either.
     if (!exists || (status.permissions() & kMayWrite) != std::filesystem::perms::none) {
       stream_ = std::fopen(part_.c_str(), "wbx");
+    } else {
+      errno = EACCES;
     }
     if (stream_ != nullptr && exists) std::filesystem::permissions(part_, status.permissions(), error);
   }

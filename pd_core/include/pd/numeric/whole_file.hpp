@@ -41,7 +41,7 @@ class WholeFile {
   bool good_ = false;
 };
 
-/// @return false where the file cannot be written; then nothing has changed.
+/// @return false where the file cannot be written, with errno; then nothing has changed.
 [[nodiscard]] bool write_whole_file(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace pd
