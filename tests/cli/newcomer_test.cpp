@@ -155,7 +155,7 @@ TEST_F(Newcomer, IsToldWhatIsWrongAndWhatWouldBeRight) {
   write("list.json", "[[0,0],[1,0],[1,1]]\n");
   write("empty.off", "");
   write("big.ply", "ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nend_header\n");
-  write("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\n");
+  write("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 4 3\n");
   write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n");
   write("square.json", R"({"outer":[[0,0],[1,0],[1,1],[0,1]]})");
   write("bow.json", R"({"outer":[[0,0],[4,4],[4,0],[0,4]]})");
