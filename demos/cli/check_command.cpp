@@ -73,13 +73,10 @@ struct CheckedMesh {
 
 CheckedMesh read_checked(const std::string& file) {
   query::MeshPoints mesh = read_mesh_argument(file, kMostChecked);
-  const auto refuse = [&](const Error& error) {
-    query::refuse(to_string(error.code), file + ": " + error.message, error.where);
-  };
   auto report = check_mesh({mesh.points, mesh.faces.offsets, mesh.faces.corners});
-  if (!report) refuse(report.error());
+  if (!report) query::refuse_file(file, report.error());
   auto hull = ConvexPolytope::from_points(mesh.points);
-  if (!hull) refuse(hull.error());
+  if (!hull) query::refuse_file(file, hull.error());
   return {file, std::move(mesh), *std::move(report), *std::move(hull)};
 }
 

@@ -246,9 +246,13 @@ NamedShape load_mesh_shape(const std::string& path, const Limits& limits, MeshAs
   return hull_of_mesh(read_mesh_points(path, limits.max_vertices, kMaxMeshBytes), path, as);
 }
 
+void refuse_file(const std::string& name, const Error& error) {
+  refuse(to_string(error.code), name + ": " + (error.where.empty() ? "" : error.where + ": ") + error.message, "");
+}
+
 NamedShape hull_of_mesh(MeshPoints mesh, const std::string& name, MeshAs as) {
   auto hull = ConvexPolytope::from_points(mesh.points);
-  if (!hull) refuse(to_string(hull.error().code), name + ": " + hull.error().message, hull.error().where);
+  if (!hull) refuse_file(name, hull.error());
   std::optional<HullNote> note;
   if (as == MeshAs::found) note = why_hull(mesh, *hull);
   if (as == MeshAs::hull) note = HullNote{"that is what was asked for", hull->num_vertices(), 0, mesh.left_out};

@@ -55,6 +55,9 @@ enum class MeshAs {
 /// unreadable_file or limit_exceeded without a path, or a refusal of the hull.
 [[nodiscard]] NamedShape load_mesh_shape(const std::string& path, const Limits& limits, MeshAs as = MeshAs::found);
 
+/// Refuses a file's mesh: "FILE: PLACE: what is wrong", in the factory's words. @throws Refusal
+[[noreturn]] void refuse_file(const std::string& name, const Error& error);
+
 /// The hull of points that were read already. @param name  begins what is said when the hull is refused
 [[nodiscard]] NamedShape hull_of_mesh(MeshPoints mesh, const std::string& name, MeshAs as = MeshAs::found);
 

@@ -68,7 +68,7 @@ MeshBody body_of_mesh(MeshPoints mesh, const std::string& name, const SolidWish&
   if (quick->convex && quick->loose_points == 0 && !wish.always) return hull(MeshAs::convex);
   if (const auto fault = fault_of_solid(*quick, wish.turn_faces)) refuse_fault(name, *fault, mesh, wish);
   const auto report = check_mesh(view, {.extent = wish.extent});
-  if (!report) refuse(to_string(report.error().code), name + ": " + report.error().message, report.error().where);
+  if (!report) refuse_file(name, report.error());
   if (const auto fault = fault_of_solid(*report, wish.turn_faces)) refuse_fault(name, *fault, mesh, wish);
   auto solid = MeshSolid::from_checked(view, *report, {.turn_faces = wish.turn_faces});
   if (!solid) {

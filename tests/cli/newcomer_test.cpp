@@ -156,6 +156,7 @@ TEST_F(Newcomer, IsToldWhatIsWrongAndWhatWouldBeRight) {
   write("empty.off", "");
   write("big.ply", "ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nend_header\n");
   write("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 4 3\n");
+  write("inf.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 inf\nf 1 2 3\nf 1 2 4\n");
   write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n");
   write("square.json", R"({"outer":[[0,0],[1,0],[1,1],[0,1]]})");
   write("bow.json", R"({"outer":[[0,0],[4,4],[4,0],[0,4]]})");
@@ -219,6 +220,9 @@ TEST_F(Newcomer, IsToldWhatIsWrongAndWhatWouldBeRight) {
        "flat.obj: the body is flat, or within rounding of a flat one; it must have an interior in R^3\n"},
       {"pdepth decompose points.obj -o o.obj",
        "there are points alone; or ask for the convex hull of its vertices (`pdepth simplify`)\n"},
+      {"pdepth check inf.obj", "inf.obj: vertices[3]: coordinates must be finite numbers\n"},
+      {"pdepth depth inf.obj cube.obj", "inf.obj: vertices[3]: "},
+      {"pdepth decompose inf.obj -o o.obj", "inf.obj: vertices[3]: "},
       {"pdepth check cube.obj --fail-on closed", R"(there is no "closed"; known: solid, not_convex, duplicate_points)"},
       {"pdepth check big.ply", "vertices; the limit is 50000000\n"},
       {"pdepth depth big.ply cube.obj", "vertices; the limit is 50000000\n"},
