@@ -90,8 +90,9 @@ TEST(DirectionTable, ListsHoldTheFarthestVertexOfEveryDirectionOfTheirCell) {
     const ConvexPolytope::Storage& s = p.storage();
     for (int i = 0; i < 300; ++i) {
       const Vec3 d = random.direction();
-      const std::int32_t cell = detail::cell_of(static_cast<float>(d.x()), static_cast<float>(d.y()),
-                                                static_cast<float>(d.z()), s.table_cells);
+      auto x = static_cast<float>(d.x()), y = static_cast<float>(d.y()), z = static_cast<float>(d.z());
+      detail::into_frame(s.table_frame(), x, y, z);
+      const std::int32_t cell = detail::cell_of(x, y, z, s.table_cells);
       ASSERT_GE(cell, 0);
       ASSERT_LT(cell, 6 * s.table_cells * s.table_cells);
       double listed = -std::numeric_limits<double>::infinity();

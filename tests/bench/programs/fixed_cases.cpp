@@ -39,7 +39,7 @@ constexpr FixedCase kCases[] = {
     {"sphere_128_mid", PairFamily::sphere, 128, DepthClass::mid, 0},
     {"sphere_128_deep", PairFamily::sphere, 128, DepthClass::deep, 0},
     {"sphere_2048_shallow", PairFamily::sphere, 2048, DepthClass::shallow, 0},
-    {"sphere_128_mid_warm", PairFamily::sphere, 128, DepthClass::mid, 0.01},
+    {"sphere_128_mid_warm", PairFamily::sphere, 128, DepthClass::mid, 0.008},
     {"needle_32_deep", PairFamily::needle, 32, DepthClass::deep, 0},
     {"grid_32_mid", PairFamily::grid, 32, DepthClass::mid, 0},
 };

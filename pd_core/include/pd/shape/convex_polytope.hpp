@@ -154,6 +154,9 @@ class ConvexPolytope {
     const std::int32_t* table_more = nullptr;  ///< [6 table_cells^2 + 1], in blocks
     std::int32_t table_cells = 0;
 
+    /// An upper triangle, row by row, that takes a direction into the frame of the table. It stands in the block before
+    /// the first one.
+    [[nodiscard]] const float* table_frame() const { return table_blocks[-1].x; }
     [[nodiscard, gnu::always_inline]] std::int32_t index(const std::byte* list, std::int32_t i) const {
       return width.read(list, static_cast<std::size_t>(i));
     }

@@ -253,19 +253,25 @@ Counts counts_of(const Storage& body) {
 
 /// Adds a table of directions, in memory of its own: its size shows only when it is made.
 void add_table(std::span<const ConvexPolytope::VertexBlock> blocks, std::span<const std::int32_t> more, int cells,
-               Storage& s) {
-  const std::size_t bytes = blocks.size_bytes() + more.size_bytes();
+               const float* frame, Storage& s) {
+  const std::size_t bytes = sizeof(ConvexPolytope::VertexBlock) + blocks.size_bytes() + more.size_bytes();
   auto* const memory = static_cast<std::byte*>(::operator new (bytes, std::align_val_t{kAlignment}));
-  std::memcpy(memory, blocks.data(), blocks.size_bytes());
-  std::memcpy(memory + blocks.size_bytes(), more.data(), more.size_bytes());
-  s.table_blocks = reinterpret_cast<const ConvexPolytope::VertexBlock*>(memory);
-  s.table_more = reinterpret_cast<const std::int32_t*>(memory + blocks.size_bytes());
+  auto* const first = new (memory) ConvexPolytope::VertexBlock{};
+  std::copy_n(frame, 6, first->x);
+  std::byte* const lists = memory + sizeof(ConvexPolytope::VertexBlock) + blocks.size_bytes();
+  std::memcpy(memory + sizeof(ConvexPolytope::VertexBlock), blocks.data(), blocks.size_bytes());
+  std::memcpy(lists, more.data(), more.size_bytes());
+  s.table_blocks = first + 1;
+  s.table_more = reinterpret_cast<const std::int32_t*>(lists);
   s.table_cells = cells;
   s.memory_bytes += bytes;
 }
 
 void release(const Storage* storage) {
-  ::operator delete (const_cast<ConvexPolytope::VertexBlock*>(storage->table_blocks), std::align_val_t{kAlignment});
+  if (storage->table_blocks != nullptr) {
+    ::operator delete (const_cast<ConvexPolytope::VertexBlock*>(storage->table_blocks - 1),
+                       std::align_val_t{kAlignment});
+  }
   ::operator delete (const_cast<Storage*>(storage), std::align_val_t{kAlignment});
 }
 
@@ -412,7 +418,7 @@ std::shared_ptr<const Storage> lay_out(std::span<const HullVertex> vertices, con
   complete(made, n, affine_dimension);
   if (n.vertices > kScanLimit) {
     const DirectionTable table = direction_table(*out.storage);
-    add_table(table.blocks, table.more, table.cells, *out.storage);
+    add_table(table.blocks, table.more, table.cells, table.frame, *out.storage);
   }
   return made.shared;
 }
@@ -450,7 +456,8 @@ std::shared_ptr<const Storage> scaled_exactly(const Storage& body, int exponent)
     // Its points are divided by the size of the body.
     const int lists = 6 * body.table_cells * body.table_cells;
     add_table({body.table_blocks, static_cast<std::size_t>(body.table_more[lists])},
-              {body.table_more, static_cast<std::size_t>(lists) + 1}, body.table_cells, *out.storage);
+              {body.table_more, static_cast<std::size_t>(lists) + 1}, body.table_cells, body.table_frame(),
+              *out.storage);
   }
   return made.shared;
 }

@@ -1,7 +1,6 @@
 #include "shape/support/direction_table.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -47,23 +46,31 @@ PD_INLINE Rises rises_of(double x, double y, double z, const Corners& corners, d
   return {(up2[0] & up2[1]) != 0, (level2[0] | level2[1]) != 0};
 }
 
+/// A body's vertices in the frame of its table.
+struct Placed {
+  std::vector<double> x, y, z;
+  double radius = 0;
+};
+
 /// The vertices that may be farthest somewhere in the cell `corners`, as they are met from `first` on, which is
 /// farthest in one of its directions. `open` and `list` have room for all vertices and one. @return how many
-PD_CLONES std::int32_t list_vertices(const Storage& p, const Corners& corners, std::int32_t first, std::int32_t cell,
-                                     std::int32_t* seen, std::int32_t* open, std::int32_t* list) {
-  const double level = kLevel * p.radius;
+PD_CLONES std::int32_t list_vertices(const Storage& p, const Placed& at, const Corners& corners, std::int32_t first,
+                                     std::int32_t cell, std::int32_t* seen, std::int32_t* open, std::int32_t* list) {
+  const double level = kLevel * at.radius;
   std::int32_t opened = 1, listed = 0;
   open[0] = first;
   seen[first] = cell;
   for (std::int32_t k = 0; k < opened; ++k) {
     const std::int32_t v = open[k];
-    const double x = p.x[v], y = p.y[v], z = p.z[v];
+    const double x = at.x[static_cast<std::size_t>(v)], y = at.y[static_cast<std::size_t>(v)],
+                 z = at.z[static_cast<std::size_t>(v)];
     bool beaten = false;
     // Its neighbours are written behind the others, and stay where it is not beaten.
     std::int32_t next = opened;
     for (std::int32_t i = p.first_half_edge(v), end = p.first_half_edge(v + 1); i < end; ++i) {
       const std::int32_t w = p.target(i);
-      const Rises rises = rises_of(p.x[w] - x, p.y[w] - y, p.z[w] - z, corners, level);
+      const Rises rises = rises_of(at.x[static_cast<std::size_t>(w)] - x, at.y[static_cast<std::size_t>(w)] - y,
+                                   at.z[static_cast<std::size_t>(w)] - z, corners, level);
       beaten = rises.everywhere;
       if (beaten) break;
       open[next] = w;
@@ -76,21 +83,41 @@ PD_CLONES std::int32_t list_vertices(const Storage& p, const Corners& corners, s
   return listed;
 }
 
+/// The transpose of L with L L^T the moments, scaled; 1 where rounding leaves none. Bodies flatter than a thousandth of
+/// their length are taken for that thick.
+void take_frame(const Mat3& moments, double first, double second, float (&frame)[6]) {
+  constexpr double kLeast = 0x1p-20;
+  const Mat3 m = first * (first * moments * second) * second;
+  const double least = kLeast * m.trace();
+  const double l00 = std::sqrt(m(0, 0) + least), l10 = m(1, 0) / l00, l20 = m(2, 0) / l00;
+  const double l11 = std::sqrt(m(1, 1) + least - l10 * l10), l21 = (m(2, 1) - l20 * l10) / l11;
+  const double l22 = std::sqrt(m(2, 2) + least - l20 * l20 - l21 * l21);
+  // Each root that is 0 or not a number leaves the last one no number.
+  const bool good = l22 > 0 && std::isfinite(l22);
+  const double rows[6] = {l00, l10, l20, l11, l21, l22}, none[6] = {1, 0, 0, 1, 0, 1};
+  for (int i = 0; i < 6; ++i) frame[i] = static_cast<float>(good ? rows[i] : none[i]);
+}
+
 class TableBuilder {
  public:
-  explicit TableBuilder(const Storage& polytope)
+  explicit TableBuilder(const Storage& polytope, float (&frame)[6])
       : p_(polytope),
         seen_(static_cast<std::size_t>(polytope.num_vertices), -1),
         open_(seen_.size() + 1),
         list_(seen_.size()),
-        scaled_(seen_.size()) {
+        placed_{std::vector<double>(seen_.size()), std::vector<double>(seen_.size()),
+                std::vector<double>(seen_.size())} {
     int exponent = 0;
     std::frexp(p_.radius, &exponent);
     // In two steps, neither of which is out of range.
     const double first = std::ldexp(1.0, -exponent / 2), second = std::ldexp(1.0, -exponent - -exponent / 2);
-    const auto scaled = [&](double value) { return static_cast<float>(value * first * second); };
-    for (int v = 0; v < p_.num_vertices; ++v) {
-      scaled_[static_cast<std::size_t>(v)] = {scaled(p_.x[v]), scaled(p_.y[v]), scaled(p_.z[v])};
+    take_frame(p_.second_moments, first, second, frame);
+    for (std::size_t i = 0; i < seen_.size(); ++i) {
+      const Vec3 x = first * (Vec3(p_.x[i], p_.y[i], p_.z[i]) - p_.centre) * second;
+      placed_.x[i] = x.x() / frame[0];
+      placed_.y[i] = (x.y() - frame[1] * placed_.x[i]) / frame[3];
+      placed_.z[i] = (x.z() - frame[2] * placed_.x[i] - frame[4] * placed_.y[i]) / frame[5];
+      placed_.radius = std::max(placed_.radius, vertex(static_cast<std::int32_t>(i)).norm());
     }
   }
 
@@ -116,7 +143,7 @@ class TableBuilder {
         corners.y[k] = corner.y();
         corners.z[k] = corner.z();
       }
-      listed_ = list_vertices(p_, corners, first, cell, seen_.data(), open_.data(), list_.data());
+      listed_ = list_vertices(p_, placed_, corners, first, cell, seen_.data(), open_.data(), list_.data());
       // Rounding must not leave a cell without any.
       if (listed_ == 0) list_[static_cast<std::size_t>(listed_++)] = first;
       std::sort(list_.begin(), list_.begin() + listed_);
@@ -127,7 +154,10 @@ class TableBuilder {
   }
 
  private:
-  [[nodiscard]] Vec3 vertex(std::int32_t v) const { return {p_.x[v], p_.y[v], p_.z[v]}; }
+  [[nodiscard]] Vec3 vertex(std::int32_t v) const {
+    const auto i = static_cast<std::size_t>(v);
+    return {placed_.x[i], placed_.y[i], placed_.z[i]};
+  }
 
   /// @param u, v  in [0, 1].
   static Vec3 direction(std::int32_t side, double u, double v) {
@@ -159,10 +189,9 @@ class TableBuilder {
       VertexBlock block;
       for (std::size_t i = 0; i < kBlock; ++i) {
         const std::int32_t v = k + i < listed ? list_[k + i] : list_[0];
-        const std::array<float, 3>& point = scaled_[static_cast<std::size_t>(v)];
-        block.x[i] = point[0];
-        block.y[i] = point[1];
-        block.z[i] = point[2];
+        block.x[i] = static_cast<float>(vertex(v).x());
+        block.y[i] = static_cast<float>(vertex(v).y());
+        block.z[i] = static_cast<float>(vertex(v).z());
         block.id[i] = v;
       }
       if (k == 0) {
@@ -179,14 +208,14 @@ class TableBuilder {
   std::vector<std::int32_t> open_;
   std::vector<std::int32_t> list_;
   std::int32_t listed_ = 0;  ///< of list_
-  std::vector<std::array<float, 3>> scaled_;
+  Placed placed_;
 };
 
 }  // namespace
 
 DirectionTable direction_table(const Storage& polytope) {
-  TableBuilder builder(polytope);
   DirectionTable table;
+  TableBuilder builder(polytope, table.frame);
   // About four vertices for every three cells.
   auto cells = static_cast<std::int32_t>(std::lround(std::sqrt(polytope.num_vertices / 8.0)));
   cells = std::clamp(cells, 1, kMostCells);
@@ -195,6 +224,7 @@ DirectionTable direction_table(const Storage& polytope) {
 }
 
 int farthest_in_table(const Storage& p, float x, float y, float z) {
+  into_frame(p.table_frame(), x, y, z);
   const std::int32_t cell = cell_of(x, y, z, p.table_cells);
   return farthest_of_blocks(p.table_blocks[cell], p.table_blocks + p.table_more[cell],
                             p.table_more[cell + 1] - p.table_more[cell], x, y, z);

@@ -6,6 +6,9 @@
 /// a support reads one short list. Cells are about as many as vertices, up to 24,576, so that lists stay short; fewer
 /// where slender normal cones cross many cells.
 ///
+/// Directions are those of the frame in which the ellipsoid of the body's second moments is a ball, so that needles and
+/// flat bodies have lists as short as those of round ones.
+///
 /// Found as follows. A vertex is left out if a neighbour is farther at all four corners of the cell, and so in all its
 /// directions. Those farthest somewhere are none of these, and hang together: where the farthest vertex changes as a
 /// direction moves through the cell, it does along an edge. So vertices are visited from the one farthest at the cell's
@@ -49,16 +52,25 @@ inline std::int32_t cell_of(float dx, float dy, float dz, std::int32_t cells) {
   return (side * cells + place(cyclic[axis + 1])) * cells + place(cyclic[axis + 2]);
 }
 
+/// Takes a direction into the frame of a table.
+inline void into_frame(const float* frame, float& x, float& y, float& z) {
+  x = frame[0] * x + frame[1] * y + frame[2] * z;
+  y = frame[3] * y + frame[4] * z;
+  z = frame[5] * z;
+}
+
 /// The first block of every cell in the order of cells, so that it is found without another look; then the further
 /// blocks of those that have any.
 struct DirectionTable {
   std::int32_t cells = 0;                           ///< squares along an edge of the cube
   std::vector<std::int32_t> more;                   ///< [6 cells^2 + 1]: where a cell's further blocks begin
   std::vector<ConvexPolytope::VertexBlock> blocks;  ///< [more.back()]
+  float frame[6] = {};                              ///< as `Storage::table_frame`
 };
 
-/// @param polytope  complete but for its table; at least one vertex. Coordinates are scaled by the power of two above
-/// its radius. Blocks are filled up with their cell's first vertex; ids rise within a cell. Time O(n) on round bodies.
+/// @param polytope  complete but for its table; at least one vertex. Coordinates are those of the frame, from
+/// the vertices' mean. Blocks are filled up with their cell's first vertex; ids rise within a cell. Time O(n) on round
+/// bodies.
 [[nodiscard]] DirectionTable direction_table(const ConvexPolytope::Storage& polytope);
 
 /// The vertex farthest in a direction, up to single precision; the least id of those equal in it. Requires a table.
