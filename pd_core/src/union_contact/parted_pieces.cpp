@@ -21,6 +21,7 @@ void PartedPieces::note(const Pose& a, const Pose& b, const PenetrationDepth& an
 }
 
 bool PartedPieces::beyond(double gap, const Pose& a, const Pose& b, double radius) const {
+  if (!known()) return false;
   const Mat3 back = b.rotation().transpose();
   const Vec3 place = back * (a.translation() - b.translation());
   // The difference of two rotations stretches two directions alike and the third not at all.

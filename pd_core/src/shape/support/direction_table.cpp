@@ -48,14 +48,24 @@ PD_INLINE Rises rises_of(double x, double y, double z, const Corners& corners, d
 
 /// A body's vertices in the frame of its table.
 struct Placed {
+  const Storage& body;
   std::vector<double> x, y, z;
   double radius = 0;
 };
 
+/// Room of the search through the vertices of a cell.
+struct CellSearch {
+  std::int32_t* seen;  ///< by vertex: the last cell that has opened it
+  std::int32_t* open;  ///< room for all vertices and one
+  std::int32_t* list;  ///< room for all vertices: those found
+};
+
 /// The vertices that may be farthest somewhere in the cell `corners`, as they are met from `first` on, which is
-/// farthest in one of its directions. `open` and `list` have room for all vertices and one. @return how many
-PD_CLONES std::int32_t list_vertices(const Storage& p, const Placed& at, const Corners& corners, std::int32_t first,
-                                     std::int32_t cell, std::int32_t* seen, std::int32_t* open, std::int32_t* list) {
+/// farthest in one of its directions. @return how many
+PD_CLONES std::int32_t list_vertices(const Placed& at, const Corners& corners, std::int32_t first, std::int32_t cell,
+                                     const CellSearch& search) {
+  const Storage& p = at.body;
+  std::int32_t *const seen = search.seen, *const open = search.open, *const list = search.list;
   const double level = kLevel * at.radius;
   std::int32_t opened = 1, listed = 0;
   open[0] = first;
@@ -105,7 +115,7 @@ class TableBuilder {
         seen_(static_cast<std::size_t>(polytope.num_vertices), -1),
         open_(seen_.size() + 1),
         list_(seen_.size()),
-        placed_{std::vector<double>(seen_.size()), std::vector<double>(seen_.size()),
+        placed_{polytope, std::vector<double>(seen_.size()), std::vector<double>(seen_.size()),
                 std::vector<double>(seen_.size())} {
     int exponent = 0;
     std::frexp(p_.radius, &exponent);
@@ -143,7 +153,7 @@ class TableBuilder {
         corners.y[k] = corner.y();
         corners.z[k] = corner.z();
       }
-      listed_ = list_vertices(p_, placed_, corners, first, cell, seen_.data(), open_.data(), list_.data());
+      listed_ = list_vertices(placed_, corners, first, cell, {seen_.data(), open_.data(), list_.data()});
       // Rounding must not leave a cell without any.
       if (listed_ == 0) list_[static_cast<std::size_t>(listed_++)] = first;
       std::sort(list_.begin(), list_.begin() + listed_);
