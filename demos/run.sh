@@ -28,7 +28,7 @@ mkdir -p out
 run_demo() {
   build/release/pdepth demo "$1" --out "out/$1" --video --force "${steps[@]}"
 }
-# The other core: the second demo, then what an installed copy holds beside the command.
+# The other core runs the second demo, then builds what an installed copy holds beside the command.
 {
   run_demo rollback >out/rollback.txt
   cmake --build --preset release -j 1 --target pdepth_c pd_doors >out/build.txt 2>&1 || { cat out/build.txt >&2; exit 1; }

@@ -226,7 +226,8 @@ void visit(const pugi::xml_node& node, const Inherited& inherited, Outlines& out
   }
 }
 
-/// What cannot be read beside the element that is asked for does no harm; a style sheet rules the whole drawing.
+/// Elements beside the one that is asked for may be unreadable. A style sheet rules the whole drawing, so that it may
+/// not.
 bool matters(const pugi::xml_node& node, const std::string& id) {
   const auto rules = [&](const pugi::xml_node& inner) {
     return id == inner.attribute("id").value() || local_name(inner) == "style";

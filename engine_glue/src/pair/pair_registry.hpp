@@ -60,7 +60,7 @@ class ManifoldOwner;
 /// Holds what the search for the points of a pair with a mesh or compound remembers.
 struct UnionPairMemory {
   std::vector<PieceMemory> pieces;  ///< sorted by number
-  /// What children of both bodies, at their number + 1, were converted to when they were last met.
+  /// The shapes of both bodies' children as they were when last met, at the child's number + 1.
   std::array<std::vector<std::shared_ptr<CachedShape>>, 2> children;
   StandingStill standing;         ///< of a body on a mesh
   SheetMemory sheet;              ///< the same
@@ -68,7 +68,7 @@ struct UnionPairMemory {
   int union_refusals = 0;         ///< in a row
   Vec3 union_way = Vec3::Zero();  ///< along which the unions were led out in the last step, zero: they were not
 
-  /// That of one child of a body (0 or 1; -1: the body itself), or null.
+  /// The shape of one child (-1: the body itself) of body 0 or 1; null where it was never met.
   [[nodiscard]] std::shared_ptr<CachedShape>& shape_of_child(std::size_t body, int child) {
     const auto place = static_cast<std::size_t>(child + 1);
     if (place >= children[body].size()) children[body].resize(place + 1);

@@ -78,7 +78,7 @@ class NearChildren final : public NearSides {
   Held a_, b_;
 };
 
-/// Whether two children are proved to be still farther apart than a gap.
+/// True if two children are proved to be still farther apart than a gap.
 bool still_apart(const PieceMemory& memory, const Child& a, const Child& b, double gap) {
   if (!memory.parted.known()) return false;
   const CachedShape& shape = *memory.shapes[0];

@@ -159,7 +159,7 @@ TEST(Warm, BodiesApartAreMetWhereTheyWere) {
 }
 
 TEST(Warm, SurfacesOfOtherBodiesAreNotBelieved) {
-  // As many vertices, and as far as the certificate knows as large, so that the surface is tried.
+  // The other pair is told to have as many vertices and the same size, so that the surface is tried.
   const JudgedPair pair = JudgedPair::of_family(PairFamily::sphere, 24, DepthClass::mid, 5);
   const JudgedPair other = JudgedPair::of_family(PairFamily::sphere, 24, DepthClass::mid, 6);
   Scratch scratch;

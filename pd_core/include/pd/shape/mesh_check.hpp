@@ -76,6 +76,7 @@ struct SurfaceReport {
   [[nodiscard]] bool closed() const { return shells > 0 && count(MeshFault::open_edge) == 0; }
   [[nodiscard]] bool oriented() const { return shells > 0 && count(MeshFault::flipped_face) == 0; }
   [[nodiscard]] bool manifold() const { return shells > 0 && count(MeshFault::not_manifold) == 0; }
+  /// False where every face lies on a line or in a point.
   [[nodiscard]] bool has_area() const { return count(MeshFault::degenerate_face) < faces; }
   /// The faces bound a solid, as far as the check went.
   [[nodiscard]] bool solid() const {
