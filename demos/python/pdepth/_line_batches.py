@@ -7,7 +7,7 @@ import json
 import numpy as np
 
 from ._core import ERRORS
-from ._errors import refused
+from ._errors import number_array, refused
 from ._queries import CONTACTS, Batch, _rows, _threads
 from ._shapes import shape_fields
 
@@ -41,7 +41,8 @@ class RowBatch(Batch):
             if f"{name}_offsets" not in self._names:
                 row[name] = self[name][i]
                 continue
-            begin, end = self[f"{name}_offsets"][i:i + 2]
+            row_of = range(len(self))[i]
+            begin, end = self[f"{name}_offsets"][row_of:row_of + 2]
             if f"{name}_loops" in self._names:
                 loops = self[f"{name}_loops"]
                 row[name] = [self[name][loops[k]:loops[k + 1]].tolist() for k in range(begin, end)]
@@ -175,8 +176,8 @@ def bodies(a, b, pose_a, pose_b):
 
 def rows_of(value, count, size, name):
     """One number or vector for all rows, or one a row, as JSON."""
-    array = np.asarray(value, dtype=float)
     single = (size,) if size else ()
+    array = number_array(value, name, f"{list(single)} or {[count, *single]}").astype(float)
     if array.shape not in (single, (count, *single)):
         raise refused(f"{name}: has shape {array.shape}, needs {single} or {(count, *single)} (bad_value)")
     return spread(texts(array.reshape((-1, *single))), count)

@@ -8,10 +8,10 @@ import tempfile
 
 import numpy as np
 
-from ._core import ERRORS, Pose, Refused, Shape
-from ._errors import refused
+from ._core import ERRORS, Pose, Refused, Shape, Sheet
+from ._errors import file_name, number_array, real_number, refused, whole_number
 from ._line_batches import ask_lines, ask_rows, bodies, rows_of, spread
-from ._queries import Fields, _is_batch, cores
+from ._queries import Fields, _is_batch, _threads
 from ._shapes import _plain, pose_fields
 
 #: Fields that hold lists of unequal lengths, or of words: they stay lists.
@@ -38,6 +38,8 @@ def _value(name, value):
 def _field(name, value):
     if isinstance(value, Shape):
         return value.protocol()
+    if isinstance(value, Sheet):
+        raise refused(f"{name}: contact_manifold alone takes a Sheet; a line names a mesh by its file (unsupported)")
     if isinstance(value, Pose) or (name in _POSES and not isinstance(value, dict)):
         return pose_fields(value, name)
     if isinstance(value, dict):  # the protocol's own form, of a pose, too
@@ -47,15 +49,28 @@ def _field(name, value):
     return _plain(value)
 
 
-def _not_finite(value, path=""):
-    """The place of the first number that is not finite."""
+    """Names the place and the fault of the first value that is no JSON, or answers None."""
+    """What keeps a value from being JSON, with its place, or None."""
     if isinstance(value, dict):
         inner = ((f"{path}.{key}" if path else key, each) for key, each in value.items())
     elif isinstance(value, list):
         inner = ((f"{path}[{i}]", each) for i, each in enumerate(value))
+    elif value is None or isinstance(value, (str, bool, int)):
+        return None
+    elif isinstance(value, float):
+        return None if np.isfinite(value) else f"{path}: must be finite (non_finite)"
     else:
-        return path if isinstance(value, float) and not np.isfinite(value) else None
-    return next(filter(None, (_not_finite(each, key) for key, each in inner)), None)
+        told = f"takes numbers, words, lists, dictionaries, shapes and poses, not a {type(value).__name__}"
+        return f"{path}: {told} (bad_value)"
+    return next(filter(None, (_fault(each, key) for key, each in inner)), None)
+
+
+def _text(line, path=""):
+    """A line of JSON. Raises Refused with the place of what is none."""
+    try:
+        return json.dumps(line, allow_nan=False)
+    except (TypeError, ValueError):
+        raise refused(_fault(line, path) or f"{path or 'query'}: a name of a field must be a word (bad_value)") from None
 
 
 def query(name, **fields):
@@ -68,11 +83,7 @@ def query(name, **fields):
     from . import _protocol
 
     line = {"query": name, **{key: _field(key, value) for key, value in fields.items() if value is not None}}
-    try:
-        text = json.dumps(line, allow_nan=False)
-    except ValueError:
-        raise refused(f"{_not_finite(line)}: must be finite (non_finite)") from None
-    answer = json.loads(_protocol.answer(text))
+    answer = json.loads(_protocol.answer(_text(line)))
     if "error" in answer:
         error = answer["error"]
         raise refused(f"{error.get('where') or name}: {error['message']} ({error['code']})")
@@ -88,6 +99,8 @@ _HULL = {"vertices": [[0.0] * 3], "vertex_ids": [0], "facets": [[0]], "affine_di
 _IMPACT = {"hit": False, "time": 0.0, "certified": 0.0, **_MEETING}
 _PLANAR = {"class": "separated", "depth": 0.0, "lower": 0.0, "upper": 0.0, "translation": [0.0] * 2, "normal": [0.0] * 2,
            "seat": False}
+#: Answers by the query's name, so that a batch has its columns even if every row is refused.
+_LIKE = {"depth": _MEETING, "width": _WIDTH, "minkowski_difference": _SUM, "hull": _HULL, "time_of_impact": _IMPACT}
 
 
 def query_many(name, rows, *, threads=None):
@@ -101,23 +114,26 @@ def query_many(name, rows, *, threads=None):
     A refusal of a row's bodies is that row's `error`, an index into pdepth.ERRORS. A row that is no such question raises
     Refused. `stats` and features are left out.
     """
-    return ask_lines([_row_line(name, row) for row in rows], threads)
+    return ask_lines([_row_line(name, row, f"rows[{i}]") for i, row in enumerate(rows)], threads, _LIKE.get(name))
 
 
-def _row_line(name, row):
+def _row_line(name, row, path):
+    """A row's line, or an index into ERRORS for a row with a number that is not finite."""
     if not isinstance(row, dict):
-        raise refused(f"rows: each must be a dictionary of the query's fields, not {type(row).__name__} (bad_value)")
+        raise refused(f"{path}: must be a dictionary of the query's fields, not a {type(row).__name__} (bad_value)")
     line = {"query": name, **{key: _field(key, value) for key, value in row.items() if value is not None}}
     try:
-        return json.dumps(line, allow_nan=False)
-    except ValueError:
+        return _text(line, path)
+    except Refused as error:
+        if error.code != "non_finite":
+            raise
         return ERRORS.index("non_finite")
 
 
 def _options(parts, count, options):
     for key, value in options.items():
         if value is not None:
-            parts[key] = [json.dumps(_plain(value))] * count
+            parts[key] = [_text(_plain(value), key)] * count
     return parts
 
 
@@ -172,6 +188,11 @@ def time_of_impact(a, b, pose_a=None, pose_b=None, *, velocity_a=None, angular_v
     return ask_rows("time_of_impact", parts, count, threads, _IMPACT)
 
 
+def _depth(value):
+    """How many lists deep a value's first numbers lie."""
+    return np.ndim(value) if isinstance(value, np.ndarray) else 1 + _depth(value[0]) if isinstance(value, (list, tuple)) and value else 0
+
+
 def polygon_depth(p, q, *, threads=None, **options):
     """Depth of two polygons in the plane; q moves. p, q: [n, 2] outlines, or {"outer": ..., "holes": [...], "margin": r}.
 
@@ -182,12 +203,14 @@ def polygon_depth(p, q, *, threads=None, **options):
     the options then hold for every row.
     """
     def listed(value):
-        return not isinstance(value, dict) and len(value) > 0 and (isinstance(value[0], dict) or np.ndim(value[0]) == 2)
+        if isinstance(value, (list, tuple)) and value:
+            return isinstance(value[0], dict) or _depth(value[0]) == 2
+        return isinstance(value, np.ndarray) and value.ndim == 3 and len(value) > 0
 
     def polygon(value, name):
         if isinstance(value, dict):
             return value
-        outline = np.asarray(value)
+        outline = number_array(value, name, "[n, 2]")
         if outline.ndim == 2 and outline.shape[0] == 2 < outline.shape[1]:
             raise refused(f"{name}: has shape {outline.shape}, needs [n, 2]; it looks transposed: pass its .T (bad_value)")
         return {"outer": value}
@@ -199,7 +222,7 @@ def polygon_depth(p, q, *, threads=None, **options):
     if any(len(each) not in (1, count) for each in sides):
         raise refused(f"polygons: as many of each, or one for all; got {len(sides[0])} and {len(sides[1])} (bad_value)")
     rows = enumerate(zip(*(spread(each, count) for each in sides)))
-    lines = [_row_line("polygon_depth", {"p": polygon(one, f"p[{i}]"), "q": polygon(other, f"q[{i}]"), **options})
+    lines = [_row_line("polygon_depth", {"p": polygon(one, f"p[{i}]"), "q": polygon(other, f"q[{i}]"), **options}, f"rows[{i}]")
              for i, (one, other) in rows]
     plain = not {"direction", "direction_set", "placements", "slots", "complete"} & options.keys()
     return ask_lines(lines, threads, _PLANAR if plain else None)
@@ -220,18 +243,21 @@ def audit(records, *, tolerance=None, worst=5, fail_on=None, threads=None):
 
     if not isinstance(records, (str, os.PathLike)) and not hasattr(records, "__iter__"):
         raise TypeError(f"records: must be a path or an iterable of lines, not {type(records).__name__}")
+    if tolerance is not None and not 1e-15 <= real_number(tolerance, "tolerance") <= 1:
+        raise refused(f"tolerance: must lie in [1e-15, 1], not {tolerance!r} (bad_value)")
+    if not isinstance(fail_on, (str, type(None))):
+        raise refused(f"fail_on: must be a word such as 'missed=0,depth_error=1e-4', not {fail_on!r} (bad_value)")
+    how = (0.0 if tolerance is None else float(tolerance), _threads(threads), whole_number(worst, "worst", 0, 1 << 20),
+           fail_on or "")
     if isinstance(records, (str, os.PathLike)):
-        return _audit_file(_protocol, os.fspath(records), tolerance, worst, fail_on, threads)
+        return _judged(_protocol.audit(file_name(records, "records"), *how))
     with tempfile.NamedTemporaryFile("w", suffix=".jsonl") as file:
         for i, record in enumerate(records):
-            plain = record if isinstance(record, str) else _record(record, i)
-            try:
-                text = plain if isinstance(plain, str) else json.dumps(plain, allow_nan=False)
-            except ValueError:
-                raise refused(f"records[{i}].{_not_finite(plain)}: must be finite (non_finite)") from None
+            text = record if isinstance(record, str) else _text(_record(record, i), f"records[{i}]")
             file.write(text.rstrip("\n") + "\n")
         file.flush()
-        return _audit_file(_protocol, file.name, tolerance, worst, fail_on, threads)
+        text, table, refusals = _protocol.audit(file_name(file.name), *how)
+        return _judged((text, table.replace(file.name, "records", 1), refusals))
 
 
 def _record(record, i):
@@ -240,8 +266,8 @@ def _record(record, i):
     return {key: _field(key, value) for key, value in record.items()}
 
 
-def _audit_file(compiled, path, tolerance, worst, fail_on, threads):
-    text, table, refusals = compiled.audit(path, tolerance or 0.0, threads or cores(), worst, fail_on or "")
+def _judged(found):
+    text, table, refusals = found
     if refusals:
         line, code, message, where = refusals[0]
         raise refused(f"records[{line - 1}]{'.' + where if where else ''}: {message} ({code})")

@@ -8,7 +8,7 @@ import tempfile
 
 import numpy as np
 
-from ._errors import refused
+from ._errors import file_name, real_number, refused, whole_number
 from ._shapes import pose_fields, shape_fields
 
 
@@ -35,8 +35,11 @@ def picture(a, b=None, pose_a=None, pose_b=None, *, size=(960, 540), azimuth=-58
     line = {"a": shape_fields(a, "a"), "pose_a": pose_fields(pose_a, "pose_a")}
     if b is not None:
         line.update(b=shape_fields(b, "b"), pose_b=pose_fields(pose_b, "pose_b"))
-    width, height = size
-    return _compiled().picture(json.dumps(line), int(width), int(height), float(azimuth), float(elevation), bool(difference))
+    if not isinstance(size, (tuple, list, np.ndarray)) or len(size) != 2:
+        raise refused(f"size: must be (width, height), not {size!r} (bad_value)")
+    pixels = [whole_number(each, "size", 16, 8192) for each in size]
+    view = real_number(azimuth, "azimuth"), real_number(elevation, "elevation")
+    return _compiled().picture(json.dumps(line), *pixels, *view, bool(difference))
 
 
 def save_picture(path, rgb):
@@ -44,10 +47,12 @@ def save_picture(path, rgb):
     shape, dtype = getattr(rgb, "shape", ()), getattr(rgb, "dtype", None)
     if len(shape) != 3 or shape[2] != 3 or dtype != np.uint8:
         raise refused(f"rgb: has shape {shape} and dtype {dtype}, needs [height, width, 3] uint8 (bad_value)")
-    path = os.fspath(path)
-    if not path.lower().endswith(".png"):
+    if 0 in shape:
+        raise refused(f"rgb: has no pixels: its shape is {shape} (bad_value)")
+    name = file_name(path)
+    if not name.lower().endswith(b".png"):
         raise refused(f"path: {path!r}: pictures are written as PNG: name it *.png (bad_value)")
-    _compiled().write_png(rgb, path)
+    _compiled().write_png(rgb, name)
 
 
 def png(rgb):

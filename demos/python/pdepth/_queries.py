@@ -7,7 +7,7 @@ import os
 import numpy as np
 
 from . import _core
-from ._errors import refused
+from ._errors import length, number_array, refused, whole_number
 from ._files import save_arrays
 from ._core import DEFAULTS
 
@@ -37,7 +37,7 @@ class Batch:
         return iter(self._names)
 
     def __len__(self):
-        return len(self.error)
+        return len(self.error) if self.error.ndim else 1
 
     def __getitem__(self, name):
         if name not in self._names:
@@ -130,6 +130,8 @@ def _bodies(shapes, argument):
 def _rows(a, b, poses_a, poses_b):
     parts = [_bodies(a, "a"), _bodies(b, "b"), _stack(poses_a, "pose_a"), _stack(poses_b, "pose_b")]
     leads = {name: lead for name, (_, lead) in zip(("a", "b", "pose_a", "pose_b"), parts) if lead is not None}
+    many = {name: lead for name, lead in leads.items() if lead != (1,)}  # a list of one is one for all
+    leads = many or leads
     if len(set(leads.values())) > 1:
         told = ", ".join(f"{name} {lead}" for name, lead in leads.items())
         raise refused(f"pairs: as many of each, or one for all; got {told} (bad_value)")
@@ -144,9 +146,7 @@ def _is_batch(a, b, pose_a, pose_b):
 def _threads(threads):
     if threads is None:
         return cores()
-    if not isinstance(threads, int) or not 1 <= threads <= 1024:
-        raise refused(f"threads: must be an integer from 1 to 1024, not {threads!r} (bad_value)")
-    return threads
+    return whole_number(threads, "threads", 1, 1024)
 
 
 def _settings(method, delta, bracket, beyond):
@@ -277,7 +277,7 @@ def directional_depth(a, b, direction, pose_a=None, pose_b=None, *, threads=None
 
     direction: [3], or [n, 3] for many; shapes and poses as in depth. Refused: 'zero_direction', 'non_finite'.
     """
-    along = np.asarray(direction)
+    along = number_array(direction, "direction", "[3] or [n, 3]")
     if along.ndim <= 1 and not _is_batch(a, b, pose_a, pose_b):
         return DirectionalDepth(_core.directional(a, b, direction, pose_a, pose_b))
     (bodies_a, bodies_b, poses_a, poses_b), lead, count = _rows(a, b, pose_a, pose_b)
@@ -310,6 +310,7 @@ def contact_manifold(a, b, pose_a=None, pose_b=None, *, breaking_threshold=0.0, 
     one_sided without a sheet and for unions and sheets in a batch; 'limit_exceeded' where unions of many pieces are deep
     in each other.
     """
+    breaking_threshold = length(breaking_threshold, "breaking_threshold")
     one_pair = isinstance(a, _ONE) and isinstance(b, _ONE) and not _many(pose_a) and not _many(pose_b)
     if isinstance(a, _core.Sheet) or isinstance(b, _core.Sheet):
         if not one_pair:
@@ -329,7 +330,7 @@ def contact_manifold(a, b, pose_a=None, pose_b=None, *, breaking_threshold=0.0, 
 
 
 def _union_manifold(a, b, pose_a, pose_b, breaking_threshold, one_sided):
-    patches, covered = _core.union_manifold(a, b, pose_a, pose_b, (float(breaking_threshold), bool(one_sided)))
+    patches, covered = _core.union_manifold(a, b, pose_a, pose_b, (breaking_threshold, bool(one_sided)))
     patches = [Manifold(fields) for fields in patches]
     return Manifold({**vars(patches[0]), "patches": patches if len(patches[0].depth) else [], "covered": covered})
 

@@ -43,7 +43,7 @@ class Robot:
         self.name = model.name
         self.links = tuple(link.name for link in model.links)
         self.joints = tuple(joint.name for joint in self._tree.joints)
-        self.coordinates, self.limits = tuple(self._tree.coordinates), self._tree.limits
+        self.coordinates = tuple(self._tree.coordinates)
         self.pairs = tuple((self.links[i], self.links[j]) for i, j in self._pairs)
 
     @classmethod
@@ -85,6 +85,18 @@ class Robot:
         if srdf is not None:
             read_srdf(srdf, model)
         return cls(model)
+
+    def __setattr__(self, name, value):
+        if name in self.__dict__ or hasattr(type(self), name):
+            raise AttributeError(f"a Robot is immutable: read another one for a new {name}")
+        object.__setattr__(self, name, value)
+
+    @property
+    def limits(self):
+        """[dof, 2], not to be written: the least and the greatest value of each coordinate. They bound no question."""
+        limits = self._tree.limits.view()
+        limits.flags.writeable = False
+        return limits
 
     @property
     def dof(self):

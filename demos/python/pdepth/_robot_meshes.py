@@ -8,7 +8,7 @@ import urllib.parse
 import numpy as np
 
 from . import _core
-from ._errors import refused
+from ._errors import length, refused
 from ._shapes import Compound, ConvexPolytope
 
 #: Ways to take a mesh.
@@ -24,17 +24,15 @@ class Meshes:
             if each not in WISHES:
                 where = "meshes" if link is None else f"meshes[{link!r}]"
                 raise refused(f"{where}: must be one of {', '.join(map(repr, WISHES))}, not {each!r} (bad_value)")
-        if not isinstance(tolerance, (int, float)) or not 0 <= tolerance < np.inf:
-            raise refused(f"tolerance: must be a length >= 0, not {tolerance!r} (bad_value)")
+        self._tolerance = length(tolerance, "tolerance")
         self._home = os.path.realpath(os.path.dirname(os.fspath(path)) or ".")
         self._packages, self._folders = _roots(package_roots)
-        self._tolerance, self._paths, self._shapes = float(tolerance), {}, {}
+        self._paths, self._shapes = {}, {}
 
-    def locate(self, nodes):
-        """Finds the files of all meshes, so that packages that are missing are named together."""
+    def locate(self, named):
+        """Finds the files of all meshes, so that packages that are missing are named together. named: (node, its URI)."""
         missing = {}
-        for node in nodes:
-            name = node.word("filename") if "filename" in node.attributes else node.need("uri").text.strip()
+        for node, name in named:
             scheme, _, rest = name.partition("://")
             if not rest:
                 self._paths[node] = self._inside(node, name, os.path.join(self._home, name))
@@ -63,6 +61,8 @@ class Meshes:
 
     def _inside(self, node, name, path):
         """The file, which lies below the robot's own folder or a root, links followed."""
+        if "\0" in path:
+            node.refuse(f"{name!r}: a file's name holds no zero byte")
         path = os.path.realpath(path)
         for folder in (self._home, *self._packages.values(), *self._folders):
             if os.path.commonpath((folder, path)) == folder:

@@ -81,7 +81,8 @@ def read_sdf(path, meshes):
             node.refuse(f"<{node.tag}> inside of a model is not read; write one flat model", "unsupported")
     frames = _Frames(root)
     parts = [(link, part) for link in root.all("link") for part in link.all("collision")]
-    meshes.locate([mesh for _, part in parts for mesh in part.need("geometry").all("mesh")])
+    found = [mesh for _, part in parts for mesh in part.need("geometry").all("mesh")]
+    meshes.locate([(mesh, mesh.need("uri").text.strip()) for mesh in found])
     links = {id(node): Link(node.word("name"), node.where) for node in root.all("link")}
     meshes.check_links([link.name for link in links.values()])
     for link, part in parts:

@@ -15,7 +15,7 @@ def read_urdf(path, meshes):
     if any(node.tag.startswith("xacro:") for node in root.children):
         root.refuse("has xacro macros; run xacro on the file and give what it prints", "unsupported")
     nodes = [(link, part) for link in root.all("link") for part in link.all("collision")]
-    meshes.locate([mesh for _, part in nodes for mesh in part.need("geometry").all("mesh")])
+    meshes.locate([(mesh, mesh.word("filename")) for _, part in nodes for mesh in part.need("geometry").all("mesh")])
     links = {id(node): Link(node.word("name"), node.where) for node in root.all("link")}
     meshes.check_links([link.name for link in links.values()])
     for link, part in nodes:
@@ -94,10 +94,11 @@ def _joint(node):
 
 
 def unit(node, axis, name):
-    length = np.linalg.norm(axis)
-    if not 0 < length < np.inf:
+    if not axis.any():
         node.refuse(f"the axis of joint {name!r} must have a length other than zero", "zero_direction")
-    return axis / length
+    if not 0 < np.linalg.norm(axis) < np.inf:  # squares out of the range of doubles
+        axis = axis / np.abs(axis).max()
+    return axis / np.linalg.norm(axis)
 
 
 def read_srdf(path, model):

@@ -63,6 +63,8 @@ class Node:
 
     def numbers_of(self, text, count, name):
         try:
+            if "_" in text or not text.isascii():  # Python's float takes 1_0, and digits of other alphabets
+                raise ValueError
             values = np.array([float(word) for word in text.split()])
         except ValueError:
             self.refuse(f"{name} must be numbers with blanks between them, not {text[:60]!r}")
@@ -109,6 +111,10 @@ def read_xml(path, root_tag):
         parser.Parse(text, True)
     except expat.ExpatError as error:
         raise refused(f"{name} line {error.lineno}: no XML: {expat.ErrorString(error.code)} (unreadable_file)") from None
+    except Refused:
+        raise
+    except (LookupError, ValueError) as error:
+        raise refused(f"{name} line {parser.CurrentLineNumber}: no XML: {error} (unreadable_file)") from None
     root = top.children[0]
     if root.tag != root_tag:
         root.refuse(f"must be a <{root_tag}>, not a <{root.tag}>")

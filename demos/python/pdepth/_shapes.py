@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import warnings
 
 import numpy as np
 
 from . import _core
-from ._errors import refused
+from ._errors import file_name, number_array, refused
 
 _AXES = {"x": 0, "y": 1, "z": 2}
 
@@ -21,7 +22,14 @@ def _plain(value):
         return value.item()
     if isinstance(value, (list, tuple)):
         return [_plain(each) for each in value]
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
     return value
+
+
+def _hashable(value):
+    """Equal numbers are equal here, whatever the sign of a zero."""
+    return tuple(_hashable(each) for each in value) if isinstance(value, (list, tuple)) else value
 
 
 def _numbers(value):
@@ -31,10 +39,18 @@ def _numbers(value):
     return np.asarray(value, dtype=float).tolist()
 
 
-def _loops(faces, argument="faces"):
-    """Faces as lists of row numbers, which are whole and no words."""
+def _vertices(vertices):
+    """Vertices of a mesh as an array [n, 3]."""
+    points = number_array(vertices, "mesh.vertices", "[n, 3]").astype(float)
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise refused(f"mesh.vertices: has shape {points.shape}, needs [n, 3] (bad_value)")
+    return points
+
+
+def _loops(faces, argument="faces", count=None):
+    """Faces as lists of row numbers, which are whole and no words. count: the number of rows, where it is known."""
     if isinstance(faces, np.ndarray) and faces.ndim == 2 and faces.dtype.kind in "iu":
-        return faces.tolist()
+        return _require_rows(faces.tolist(), argument, count)
     try:
         loops = [list(face) for face in faces]
     except TypeError:
@@ -44,7 +60,14 @@ def _loops(faces, argument="faces"):
             whole = isinstance(each, (int, np.integer)) or isinstance(each, (float, np.floating)) and float(each).is_integer()
             if not whole or isinstance(each, bool):
                 raise refused(f"{argument}[{i}]: row numbers of vertices are integers from 0, not {each!r} (bad_faces)")
-    return [[int(each) for each in loop] for loop in loops]
+    return _require_rows([[int(each) for each in loop] for loop in loops], argument, count)
+
+
+def _require_rows(loops, argument, count):
+    for i, loop in enumerate(loops if count is not None else ()):
+        if loop and not 0 <= min(loop) <= max(loop) < count:
+            raise refused(f"{argument}[{i}]: vertices are numbered 0 to {count - 1} (out_of_range)")
+    return loops
 
 
 def _keep(shape, name, value):
@@ -54,8 +77,14 @@ def _keep(shape, name, value):
     object.__setattr__(shape, name, value)
 
 
+def _require_unmade(shape):
+    """Python lets a caller make an object a second time."""
+    if "_arguments" in shape.__dict__:
+        raise AttributeError(f"{type(shape).__name__} is immutable: make another one with the new numbers")
+
+
 def _axis(axis):
-    if axis not in _AXES:
+    if not isinstance(axis, str) or axis not in _AXES:
         raise refused(f"axis: must be 'x', 'y' or 'z', not {axis!r} (bad_value)")
     return _AXES[axis]
 
@@ -99,6 +128,7 @@ class Shape(_core.Shape):
     """
 
     def __init__(self, kind, numbers, margin, arguments):
+        _require_unmade(self)
         super().__init__(kind, numbers, margin)  # which refuses what is no number
         self._arguments = {name: _numbers(value) for name, value in arguments.items()}
         if margin:
@@ -111,8 +141,7 @@ class Shape(_core.Shape):
 
     def protocol(self):
         """The shape as a dictionary of the line protocol, for `pdepth query` and contact records."""
-        fields = {"type": self._type, **{key: value for key, value in self._arguments.items()}}
-        return fields
+        return {"type": self._type, **{key: _plain(value) for key, value in self._arguments.items()}}
 
     def __setattr__(self, name, value):
         _keep(self, name, value)
@@ -125,10 +154,10 @@ class Shape(_core.Shape):
         return type(self) is type(other) and self._arguments == other._arguments
 
     def __hash__(self):
-        return hash(repr(self))
+        return hash((type(self), *((name, _hashable(value)) for name, value in self._arguments.items())))
 
     def __reduce__(self):
-        return _again, (type(self), self._arguments)
+        return _reduced(self)
 
     def __copy__(self):
         return self
@@ -154,6 +183,7 @@ class Sheet(_core.Sheet):
     """
 
     def __init__(self, vertices, faces, *, margin=0.0):
+        _require_unmade(self)
         faces = _loops(faces)
         super().__init__(vertices, faces, margin)
         self._arguments = {"vertices": _numbers(vertices), "faces": faces}
@@ -164,10 +194,12 @@ class Sheet(_core.Sheet):
         _keep(self, name, value)
 
     def __repr__(self):
-        return f"Sheet({', '.join(f'{name}={value!r}' for name, value in self._arguments.items())})"
+        return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in self._arguments.items())})"
+
+    __eq__, __hash__ = Shape.__eq__, Shape.__hash__
 
     def __reduce__(self):
-        return _again, (type(self), self._arguments)
+        return _reduced(self)
 
 
 def shape_fields(shape, argument):
@@ -177,8 +209,17 @@ def shape_fields(shape, argument):
     return shape.protocol()
 
 
+def _reduced(shape):
+    """The numbers of a shape, and what a caller's class keeps beside them."""
+    kept = {name: value for name, value in shape.__dict__.items() if name != "_arguments"}
+    return (_again, (type(shape), shape._arguments), *([kept] if kept else []))
+
+
 def _again(kind, arguments):
-    return kind(**arguments)
+    """A shape of its numbers. A caller's class may take other arguments; the class of pdepth below it takes these."""
+    shape = kind.__new__(kind)
+    next(each for each in kind.__mro__ if each.__module__ == __name__).__init__(shape, **arguments)
+    return shape
 
 
 class ConvexPolytope(Shape):
@@ -231,31 +272,30 @@ class ConvexPolytope(Shape):
         """
         from . import _protocol
 
-        def warn_of(reason, name):
-            if reason:
-                told = f"{name}: {reason}, so that the shape is its convex hull; hull=True says that this is meant"
-                warnings.warn(told, stacklevel=3)
-
+        reason = ""
         if isinstance(mesh, (str, os.PathLike)):
-            points, _, reason = _protocol.mesh_points(os.fspath(mesh), not hull)
-            warn_of(reason, os.fspath(mesh))
-            return cls(points, margin=margin)
-        if not hasattr(mesh, "vertices"):
-            raise refused(f"mesh: a path, or an object with .vertices and .faces, not {type(mesh).__name__} (bad_value)")
-        points = np.asarray(mesh.vertices, dtype=float)
-        faces = np.asarray(getattr(mesh, "faces", ()))
-        if faces.size:
-            if faces.dtype.kind not in "iu":
+            name = os.fspath(mesh)
+            points, _, reason = _protocol.mesh_points(file_name(mesh, "mesh"), not hull)
+        elif hasattr(mesh, "vertices"):
+            name, points = "mesh", _vertices(mesh.vertices)
+            faces = getattr(mesh, "faces", ())
+            if isinstance(faces, np.ndarray) and faces.size and faces.dtype.kind not in "iu":
                 raise refused(f"mesh.faces: dtype {faces.dtype} is not taken; give integers (bad_value)")
-            outside = ((faces < 0) | (faces >= len(points))).reshape((len(faces), -1)).any(axis=1)
-            if outside.any():
-                row = int(np.argmax(outside))
-                raise refused(f"mesh.faces[{row}]: vertices are numbered 0 to {len(points) - 1} (out_of_range)")
-            used, rows = np.unique(faces, return_inverse=True)
-            points = points[used]
-            if not hull:
-                warn_of(_protocol.mesh_points((points, rows.reshape(faces.shape).tolist()), True)[2], "mesh")
-        return cls(points, margin=margin)
+            loops = _loops(faces, "mesh.faces", len(points))
+            if loops:
+                flat = np.fromiter(itertools.chain.from_iterable(loops), dtype=np.int64)
+                used, rows = np.unique(flat, return_inverse=True)
+                points, rows = points[used], iter(rows.tolist())
+                if not hull and np.isfinite(points).all():
+                    loops = [list(itertools.islice(rows, len(loop))) for loop in loops]
+                    reason = _protocol.mesh_points((points, loops), True)[2]
+        else:
+            raise refused(f"mesh: a path, or an object with .vertices and .faces, not {type(mesh).__name__} (bad_value)")
+        shape = cls(points, margin=margin)
+        if reason:
+            told = f"{name}: {reason}, so that the shape is its convex hull; hull=True says that this is meant"
+            warnings.warn(told, stacklevel=2)
+        return shape
 
 
 class Box(Shape):
@@ -348,6 +388,8 @@ class Compound(Shape):
 
     def __init__(self, parts, *, margin=0.0):
         placed = []
+        if not hasattr(parts, "__iter__"):
+            raise refused(f"parts: must be a list of shapes or of (shape, pose), not {type(parts).__name__} (bad_value)")
         for i, part in enumerate(parts):
             shape, pose = part if isinstance(part, (tuple, list)) and len(part) == 2 else (part, None)
             placed.append((shape, as_pose(pose, f"parts[{i}].pose")))
@@ -370,10 +412,13 @@ class Compound(Shape):
         """
         from . import _protocol
 
+        if side not in ("outer", "inner"):
+            raise refused(f"side: must be 'outer' or 'inner', not {side!r} (bad_value)")
         if isinstance(mesh, (str, os.PathLike)):
-            source = os.fspath(mesh)
+            source = file_name(mesh, "mesh")
         elif hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
-            source = (mesh.vertices, _loops(mesh.faces, "mesh.faces"))
+            points = _vertices(mesh.vertices)
+            source = (points, _loops(mesh.faces, "mesh.faces", len(points)))
         else:
             raise refused(f"mesh: a path, or an object with .vertices and .faces, not {type(mesh).__name__} (bad_value)")
         parts, reached = _protocol.mesh_parts(source, error, side, bool(turn_faces))

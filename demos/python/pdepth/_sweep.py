@@ -14,16 +14,23 @@ import numpy as np
 
 from . import _queries
 from ._core import Shape
-from ._errors import refused
+from ._errors import refused, whole_number
 from ._files import save_arrays
 
 
 class Sweep:
     """The files of a sweep: `files` in the order of the pairs, `computed` of them by this call, the others kept from before."""
 
-    def __init__(self, folder, files, rows, computed):
+    def __init__(self, folder, files, inputs, computed):
         self.folder, self.files, self.computed = folder, files, computed
-        self.count, self._noun = rows
+        self.count, self._noun, self._empty = inputs.count, inputs.noun, None
+
+    @classmethod
+    def of_nothing(cls, folder, inputs, threads, options):
+        """A sweep without rows, and so without files, has the columns of a batch without rows."""
+        made = cls(folder, [], inputs, 0)
+        made._empty = inputs.chunk(inputs.shared, *inputs.rows(0, 0), threads, options)
+        return made
 
     def __iter__(self):
         """The chunks in order, each a dictionary of arrays; one in memory at a time."""
@@ -33,7 +40,7 @@ class Sweep:
 
     def __getitem__(self, name):
         """One column of all pairs."""
-        return np.concatenate([chunk[name] for chunk in self])
+        return np.concatenate([chunk[name] for chunk in (self if self._empty is None else [self._empty])])
 
     def __repr__(self):
         return f"<Sweep of {self.count} {self._noun} in {len(self.files)} files, {self.computed} of them computed now: {self.folder}>"
@@ -110,7 +117,10 @@ class _Pairs:
 
     def rows(self, begin, end):
         pairs = np.ascontiguousarray(self.pairs[begin:end], dtype=np.int64)
-        poses_a, poses_b = self.poses(begin, end) if callable(self.poses) else (each[begin:end] for each in self.poses)
+        if begin == end:
+            poses_a = poses_b = np.empty((0, 4, 4))
+        else:
+            poses_a, poses_b = self.poses(begin, end) if callable(self.poses) else (each[begin:end] for each in self.poses)
         return pairs, np.asarray(poses_a, dtype=float), np.asarray(poses_b, dtype=float)
 
 
@@ -173,8 +183,7 @@ def sweep(shapes, pairs, poses, client=None, *, out, chunk=10_000, threads=None,
 def run(inputs, client, how, options):
     """Runs a question of many rows in chunks. how: the arguments out, chunk, threads and progress of `sweep`."""
     out, chunk, threads, progress = (how[name] for name in ("out", "chunk", "threads", "progress"))
-    if not isinstance(chunk, int) or chunk < 1:
-        raise refused(f"chunk: must be an integer from 1, not {chunk!r} (bad_value)")
+    chunk = whole_number(chunk, "chunk", 1)
     folder = pathlib.Path(out)
     folder.mkdir(parents=True, exist_ok=True)
     from . import __version__
@@ -184,6 +193,8 @@ def run(inputs, client, how, options):
     shown = _Progress(inputs.count, inputs.noun, progress)
     files = [folder / f"chunk_{k:06d}.npz" for k in range(-(-inputs.count // chunk))]
     computed = 0
+    if inputs.count == 0:
+        return Sweep.of_nothing(folder, inputs, threads or 1, options)
 
     def missing():
         for k, path in enumerate(files):
@@ -205,4 +216,4 @@ def run(inputs, client, how, options):
         _run_here(inputs, missing(), finish, threads, options)
     else:
         _run_on(client, inputs, missing(), finish, threads or 1, options)
-    return Sweep(folder, files, (inputs.count, inputs.noun), computed)
+    return Sweep(folder, files, inputs, computed)

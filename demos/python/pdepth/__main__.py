@@ -1,0 +1,5 @@
+"""python -m pdepth is the command pdepth."""
+
+from ._command import main
+
+main()
