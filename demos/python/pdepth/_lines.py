@@ -49,8 +49,8 @@ def _field(name, value):
     return _plain(value)
 
 
+def _fault(value, path):
     """Names the place and the fault of the first value that is no JSON, or answers None."""
-    """What keeps a value from being JSON, with its place, or None."""
     if isinstance(value, dict):
         inner = ((f"{path}.{key}" if path else key, each) for key, each in value.items())
     elif isinstance(value, list):
