@@ -11,8 +11,9 @@
 /// (`pdepth-bench arya`), the sampling's order, and fewer where K is flat.
 ///
 /// Intersections inside become bodies of halfspaces first, between the supports of polytopes inside their parts and
-/// those that hold them, as fine as the intersection asks for (`src/dimension/flattened_body.hpp`). The promise is that
-/// of all sums, relative to the widths of the composed body itself. Thin intersections of large parts are dear.
+/// those that hold them, as fine as the intersection asks for (`src/dimension/composed/flattened_body.hpp`). The
+/// promise is that of all sums, relative to the widths of the composed body itself. Thin intersections of large parts
+/// are dear.
 #pragma once
 
 #include "pd/dimension/approximate_body.hpp"

@@ -27,11 +27,12 @@ struct ApproximateWidth {
   StructureSize structure;
 };
 
-/// @param epsilon  in (0, 1); at least 1.2e-7 with the kernel backend.
+/// @param epsilon  in (0, 1); at least 1.2e-7 with the kernel backend. Both ends are widened by 1e-10 for rounding, so
+/// that below 1e-5 they may stand (1 + epsilon) (1 + 3e-10) apart.
 /// @return ErrorCode::bad_value ("epsilon").
-/// The structure of the backend is built for 0.9 epsilon / (1 + epsilon), the search ends at the rest; bounds up to
-/// rounding (1e-9, relative). Budget of the search: a million facets, where a thousand products of the structure count
-/// as one; if it ends first, the bracket so far stands.
+/// The structure of the backend is built for 0.9 epsilon / (1 + epsilon), the search ends at the rest. Budget of the
+/// search: a million facets, where a thousand products of the structure count as one; if it ends first, the bracket so
+/// far stands.
 template <int D>
 [[nodiscard]] Expected<ApproximateWidth<D>> approximate_width(const Body<D>& body, double epsilon,
                                                               Backend backend = Backend::kernel);
