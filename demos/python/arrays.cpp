@@ -116,9 +116,14 @@ void use_refused(const py::object& exception_class) {
     } catch (const Refused& error) {
       const std::string place = error.where + ": ";
       const bool placed = error.message.starts_with(place);  // the reader of a file names the file
-      const py::object instance = refused((placed ? "" : place) + error.message + " (" + error.code + ")");
+      // A file's name may hold bytes that are no UTF-8; Python's own form of such names keeps them.
+      const auto word = [](const std::string& text) {
+        return py::reinterpret_steal<py::str>(
+            PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "surrogateescape"));
+      };
+      const py::object instance = refused(word((placed ? "" : place) + error.message + " (" + error.code + ")"));
       instance.attr("code") = error.code;
-      instance.attr("where") = error.where;
+      instance.attr("where") = word(error.where);
       PyErr_SetObject(refused.ptr(), instance.ptr());
     } catch (const py::cast_error&) {
       PyErr_SetString(PyExc_TypeError, "an argument is of another type, or was never made: __new__ alone makes none");

@@ -12,6 +12,7 @@
 
 #include "pd/numeric/expected.hpp"
 #include "pd/numeric/vector.hpp"
+#include "python/interpreter_lock.hpp"
 
 namespace pd::python {
 

@@ -187,7 +187,7 @@ py::dict depth_rows(std::vector<BodyRef> a, std::vector<BodyRef> b, py::handle p
   }
   DepthColumns columns(count);
   {
-    const py::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     if (stretches == 0) {
       for_each_row(count, threads,
                    [&](std::int64_t i, Workspace& space) { answer_row(pairs, i, settings, space, nullptr, columns); });
@@ -226,14 +226,15 @@ py::dict directional_rows(std::vector<BodyRef> a, std::vector<BodyRef> b, py::ha
     if (!pose_a || !pose_b) {
       error.numbers[i] = code_of(pose_a ? pose_b.error() : pose_a.error());
     } else if (body_a.convex() != nullptr && body_b.convex() != nullptr) {
-      take(directional_depth({body_a.convex(), *pose_a}, {body_b.convex(), *pose_b}, direction, space.scratch));
+      take(finite_or_error(
+          directional_depth({body_a.convex(), *pose_a}, {body_b.convex(), *pose_b}, direction, space.scratch)));
     } else {
       const Compound whole_a = body_a.compound(), whole_b = body_b.compound();
-      take(directional_depth({&whole_a, *pose_a}, {&whole_b, *pose_b}, direction, space.scratch));
+      take(finite_or_error(directional_depth({&whole_a, *pose_a}, {&whole_b, *pose_b}, direction, space.scratch)));
     }
   };
   {
-    const py::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     for_each_row(count, threads, answer);
   }
   py::dict fields;
@@ -261,6 +262,10 @@ py::dict derivative_rows(std::vector<BodyRef> a, std::vector<BodyRef> b, py::han
       columns.error.numbers[i] = code_of({ErrorCode::unsupported, "", ""});
     } else {
       const DepthDerivatives found = depth_derivatives({shape_a, *pose_a}, {shape_b, *pose_b}, space.scratch);
+      if (!is_finite(found.answer)) {
+        columns.error.numbers[i] = code_of(past_doubles());
+        return;
+      }
       UnionDepth depth;
       static_cast<PenetrationDepth&>(depth) = found.answer;
       columns.put(i, depth);
@@ -275,7 +280,7 @@ py::dict derivative_rows(std::vector<BodyRef> a, std::vector<BodyRef> b, py::han
     }
   };
   {
-    const py::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     for_each_row(count, threads, answer);
   }
   py::dict fields = columns.fields();
@@ -290,7 +295,6 @@ py::dict derivative_rows(std::vector<BodyRef> a, std::vector<BodyRef> b, py::han
 
 py::dict manifold_rows(std::vector<BodyRef> a, std::vector<BodyRef> b, py::handle poses_a, py::handle poses_b,
                        std::int64_t rows, double threshold, int threads) {
-  if (!(threshold >= 0)) refuse("bad_value", "a length >= 0", "breaking_threshold");
   const Pairs pairs = read_pairs(std::move(a), std::move(b), poses_a, poses_b, rows);
   Words<std::uint8_t> error(rows, 1), count(rows, 1);
   Words<std::int64_t> ids(rows, 4);
@@ -309,6 +313,10 @@ py::dict manifold_rows(std::vector<BodyRef> a, std::vector<BodyRef> b, py::handl
     const PosedShape first{shape_a, *pose_a}, second{shape_b, *pose_b};
     const PenetrationDepth found = penetration_depth(first, second, space.scratch);
     const ContactManifold manifold = contact_manifold(first, second, found, threshold, space.manifold);
+    if (!is_finite(manifold)) {
+      error.numbers[i] = code_of(past_doubles());
+      return;
+    }
     count.numbers[i] = static_cast<std::uint8_t>(manifold.count);
     normal.put(i, manifold.normal);
     for (int k = 0; k < manifold.count; ++k) {
@@ -320,7 +328,7 @@ py::dict manifold_rows(std::vector<BodyRef> a, std::vector<BodyRef> b, py::handl
     }
   };
   {
-    const py::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     for_each_row(rows, threads, answer);
   }
   py::dict fields;

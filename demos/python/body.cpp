@@ -2,6 +2,7 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <map>
@@ -21,7 +22,7 @@ BodyRef make(std::variant<ConvexShape, Compound> value) { return std::make_share
 BodyRef make_faces(const py::tuple& numbers) {
   const std::vector<Vec3> points = read_points(numbers[0], "vertices");
   std::vector<std::int32_t> offsets{0}, corners;
-  for (const auto& face : read_faces(numbers[1])) {
+  for (const auto& face : read_faces(numbers[1], points.size())) {
     corners.insert(corners.end(), face.begin(), face.end());
     offsets.push_back(static_cast<std::int32_t>(corners.size()));
   }
@@ -42,7 +43,7 @@ BodyRef make_halfspaces(const py::tuple& numbers) {
 BodyRef make_star(const py::tuple& numbers) {
   const std::vector<Vec3> points = read_points(numbers[0], "vertices");
   std::vector<StarBody::Triangle> triangles;
-  for (const auto& face : read_faces(numbers[1])) {
+  for (const auto& face : read_faces(numbers[1], points.size())) {
     if (face.size() != 3) {
       refuse("bad_faces", "a face has three corners", "faces[" + std::to_string(triangles.size()) + "]");
     }
@@ -81,7 +82,7 @@ const std::map<std::string, Make>& makers() {
       {"points",
        [](const py::tuple& n) {
          const std::vector<Vec3> points = read_points(n[0], "points");
-         const py::gil_scoped_release unlocked;
+         const Unlocked unlocked;
          return make(ConvexShape(value_of(ConvexPolytope::from_points(points), "points")));
        }},
       {"faces", make_faces},
@@ -161,14 +162,19 @@ std::vector<Vec3> read_points(py::handle value, std::string_view argument) {
   return points;
 }
 
-std::vector<std::vector<std::int32_t>> read_faces(py::handle value) {
+std::vector<std::vector<std::int32_t>> read_faces(py::handle value, std::size_t num_points) {
+  const auto count = static_cast<long long>(std::clamp<std::size_t>(num_points, 1, INT32_MAX));
   std::vector<std::vector<std::int32_t>> faces;
   for (const py::handle face : value) {
     faces.emplace_back();
     for (const py::handle index : face) {
-      const auto number = py::int_(py::reinterpret_borrow<py::object>(index)).cast<std::int64_t>();
-      if (number < 0 || number > INT32_MAX) {
-        refuse("bad_faces", "an index is a number from 0", "faces[" + std::to_string(faces.size() - 1) + "]");
+      int overflow = 0;
+      const long long number = PyLong_AsLongLongAndOverflow(index.ptr(), &overflow);
+      if (PyErr_Occurred() != nullptr) throw py::error_already_set();
+      if (overflow != 0 || number < 0 || number >= count) {
+        refuse("bad_faces",
+               "vertex index " + py::str(index).cast<std::string>() + " is outside 0.." + std::to_string(count - 1),
+               "faces[" + std::to_string(faces.size() - 1) + "]");
       }
       faces.back().push_back(static_cast<std::int32_t>(number));
     }

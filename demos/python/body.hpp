@@ -34,8 +34,8 @@ using BodyRef = std::shared_ptr<Body>;
 
 /// An array [n, 3]. @throws Refused as `read_array`
 [[nodiscard]] std::vector<Vec3> read_points(py::handle value, std::string_view argument);
-/// A list of lists of indices, or an array of them. @throws Refused bad_faces for a number that is no index
-[[nodiscard]] std::vector<std::vector<std::int32_t>> read_faces(py::handle value);
+/// A list of lists of indices below `num_points`. @throws Refused bad_faces for another number
+[[nodiscard]] std::vector<std::vector<std::int32_t>> read_faces(py::handle value, std::size_t num_points);
 
 /// Declares `Shape`, the base of Python's shapes.
 void bind_shapes(py::module_& module);

@@ -69,7 +69,6 @@ Compound decomposed(const MeshSolid& solid, DecompositionSettings& settings) {
 
 py::tuple mesh_parts(py::handle mesh, py::handle error, const std::string& side, bool turn_faces) {
   DecompositionSettings settings;
-  if (side != "outer" && side != "inner") refuse("bad_value", "must be 'outer' or 'inner', not '" + side + "'", "side");
   settings.inside = side == "inner";
   if (!error.is_none()) {
     settings.error = *read_array(error, "error", {}).data();
@@ -85,7 +84,7 @@ py::tuple mesh_parts(py::handle mesh, py::handle error, const std::string& side,
                                 .hull_words = "ConvexPolytope.from_mesh(..., hull=True)",
                                 .turn_words = "turn_faces=True"};
     Compound parts = [&] {
-      const py::gil_scoped_release unlocked;
+      const Unlocked unlocked;
       return error.is_none() ? query::parts_of_mesh(source, name, wish).compound
                              : decomposed_mesh(std::move(source), name, wish, settings);
     }();

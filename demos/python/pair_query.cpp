@@ -2,8 +2,11 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <string_view>
 
 #include "pd/depth/derivatives.hpp"
 #include "pd/depth/directional_depth.hpp"
@@ -61,13 +64,40 @@ Expected<UnionDepth> ask_convex(const ConvexShape& a, const Pose& pose_a, const 
   return answer;
 }
 
+struct PosedBody {
+  const Body& body;
+  const Pose& pose;
+};
+
+Expected<UnionDepth> ask_any(const PosedBody& a, const PosedBody& b, const QuerySettings& settings, Workspace& space,
+                             PairMemory* memory) {
+  if (a.body.convex() != nullptr && b.body.convex() != nullptr) {
+    return ask_convex(*a.body.convex(), a.pose, *b.body.convex(), b.pose, settings, space,
+                      memory == nullptr ? nullptr : &memory->convex);
+  }
+  if (settings.depth.method != Method::automatic) {
+    return Error{ErrorCode::unsupported, "unions of parts are answered by the method 'auto'", "method"};
+  }
+  const Compound whole_a = a.body.compound(), whole_b = b.body.compound();
+  return penetration_depth({&whole_a, a.pose}, {&whole_b, b.pose}, space.scratch, {.delta = settings.union_delta},
+                           memory == nullptr ? nullptr : &memory->unions);
+}
+
+bool is_word(py::handle value, std::string_view word) {
+  return py::isinstance<py::str>(value) && value.cast<std::string>() == word;
+}
+
+std::string repr_of(py::handle value) { return py::repr(value).cast<std::string>(); }
+
 /// A pair whose memory the caller keeps: `Warm` of Python.
 PairAnswer ask_pair(const py::object& a, const py::object& b, py::handle pose_a, py::handle pose_b,
                     const QuerySettings& settings, PairMemory* memory) {
   const Body &body_a = body_of(a), &body_b = body_of(b);
   const Pose first = read_pose(pose_a, "pose_a"), second = read_pose(pose_b, "pose_b");
+  std::optional<PairMemory::Use> use;
+  if (memory != nullptr) use.emplace(*memory);
   Expected<UnionDepth> answer = [&] {
-    const py::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     return ask(body_a, first, body_b, second, settings, workspace(), memory);
   }();
   return {value_of(std::move(answer), "pair"), a, b};
@@ -102,21 +132,23 @@ py::dict directional_pair(const BodyRef& a, const BodyRef& b, py::handle directi
     fields["normal"] = array_of(answer.normal);
   };
   if (a->convex() != nullptr && b->convex() != nullptr) {
-    fill(value_of(directional_depth({a->convex(), first}, {b->convex(), second}, along, workspace().scratch),
-                  "direction"));
+    fill(value_of(
+        finite_or_error(directional_depth({a->convex(), first}, {b->convex(), second}, along, workspace().scratch)),
+        "direction"));
   } else {
     const Compound whole_a = a->compound(), whole_b = b->compound();
-    fill(value_of(directional_depth({&whole_a, first}, {&whole_b, second}, along, workspace().scratch), "direction"));
+    fill(value_of(finite_or_error(directional_depth({&whole_a, first}, {&whole_b, second}, along, workspace().scratch)),
+                  "direction"));
   }
   return fields;
 }
 
 py::dict manifold_pair(const BodyRef& a, const BodyRef& b, py::handle pose_a, py::handle pose_b, double threshold) {
-  if (!(threshold >= 0)) refuse("bad_value", "a length >= 0", "breaking_threshold");
   const PosedShape first{&convex_of(*a, "a"), read_pose(pose_a, "pose_a")};
   const PosedShape second{&convex_of(*b, "b"), read_pose(pose_b, "pose_b")};
   const PenetrationDepth answer = penetration_depth(first, second, workspace().scratch);
   const ContactManifold manifold = contact_manifold(first, second, answer, threshold, workspace().manifold);
+  if (!is_finite(manifold)) refuse(past_doubles(), "pair");
   return contact_fields(manifold.normal, {manifold.points.begin(), manifold.points.begin() + manifold.count});
 }
 
@@ -124,9 +156,10 @@ py::dict derivatives_pair(const py::object& shape_a, const py::object& shape_b, 
   const PosedShape first{&convex_of(body_of(shape_a), "a"), read_pose(pose_a, "pose_a")};
   const PosedShape second{&convex_of(body_of(shape_b), "b"), read_pose(pose_b, "pose_b")};
   const DepthDerivatives found = [&] {
-    const py::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     return depth_derivatives(first, second, workspace().scratch);
   }();
+  if (!is_finite(found.answer)) refuse(past_doubles(), "pair");
   const auto six = [](const PoseGradient& gradient) {
     Array array(6);
     for (int k = 0; k < 3; ++k) {
@@ -276,9 +309,10 @@ void bind_answer(py::module_& module) {
 
 }  // namespace
 
-void PairMemory::clear() {
-  convex.clear();
-  unions.clear();
+PairMemory::Use::Use(PairMemory& memory) : memory_(memory) {
+  if (memory.in_use.exchange(true, std::memory_order_acquire)) {
+    refuse("in_use", "another thread asks with this Warm; give each thread one of its own", "warm");
+  }
 }
 
 Workspace& workspace() {
@@ -286,8 +320,7 @@ Workspace& workspace() {
   return space;
 }
 
-QuerySettings read_settings(const std::string& method, py::handle delta, const std::string& bracket,
-                            py::handle beyond) {
+QuerySettings read_settings(py::handle method, py::handle delta, py::handle bracket, py::handle beyond) {
   QuerySettings settings;
   if (!beyond.is_none()) {
     const Array number = read_array(beyond, "beyond", {});
@@ -303,36 +336,49 @@ QuerySettings read_settings(const std::string& method, py::handle delta, const s
                                 Method::decomposition, Method::shallow,   Method::grid};
   bool known = false;
   for (const Method each : kMethods) {
-    if (method != to_string(each)) continue;
+    if (!is_word(method, to_string(each))) continue;
     settings.depth.method = each;
     known = true;
   }
   if (!known) {
-    refuse("bad_value", "known: auto, expansion, overlay, decomposition, shallow, grid; not '" + method + "'",
+    refuse("bad_value", "known: auto, expansion, overlay, decomposition, shallow, grid; not " + repr_of(method),
            "method");
   }
-  if (bracket == "certified") {
+  if (is_word(bracket, "certified")) {
     settings.depth.bracket = Bracket::certified;
-  } else if (bracket == "contact") {
+  } else if (is_word(bracket, "contact")) {
     settings.depth.bracket = Bracket::contact;
-  } else if (bracket != "tightest") {
-    refuse("bad_value", "known: tightest, certified, contact; not '" + bracket + "'", "bracket");
+  } else if (!is_word(bracket, "tightest")) {
+    refuse("bad_value", "known: tightest, certified, contact; not " + repr_of(bracket), "bracket");
   }
   return settings;
 }
 
+Error past_doubles() {
+  return {ErrorCode::out_of_range, "the answer is past the range of doubles; bring the sizes nearer to each other", ""};
+}
+
+bool is_finite(const PenetrationDepth& x) {
+  for (const double number : {x.depth, x.lower, x.upper, x.distance, x.distance_lower, x.distance_upper}) {
+    if (!std::isfinite(number)) return false;
+  }
+  return x.translation.allFinite() && x.normal.allFinite() && x.witness_a.allFinite() && x.witness_b.allFinite();
+}
+
+bool is_finite(const ContactPoint& point) {
+  return std::isfinite(point.depth) && point.position_a.allFinite() && point.position_b.allFinite();
+}
+
+bool is_finite(const ContactManifold& manifold) {
+  return manifold.normal.allFinite() && std::all_of(manifold.points.begin(), manifold.points.begin() + manifold.count,
+                                                    [](const ContactPoint& point) { return is_finite(point); });
+}
+
 Expected<UnionDepth> ask(const Body& a, const Pose& pose_a, const Body& b, const Pose& pose_b,
                          const QuerySettings& settings, Workspace& space, PairMemory* memory) {
-  if (a.convex() != nullptr && b.convex() != nullptr) {
-    return ask_convex(*a.convex(), pose_a, *b.convex(), pose_b, settings, space,
-                      memory == nullptr ? nullptr : &memory->convex);
-  }
-  if (settings.depth.method != Method::automatic) {
-    return Error{ErrorCode::unsupported, "unions of parts are answered by the method 'auto'", "method"};
-  }
-  const Compound whole_a = a.compound(), whole_b = b.compound();
-  return penetration_depth({&whole_a, pose_a}, {&whole_b, pose_b}, space.scratch, {.delta = settings.union_delta},
-                           memory == nullptr ? nullptr : &memory->unions);
+  Expected<UnionDepth> answer = ask_any({a, pose_a}, {b, pose_b}, settings, space, memory);
+  if (answer && !is_finite(*answer)) return past_doubles();
+  return answer;
 }
 
 py::dict contact_fields(const Vec3& normal, const std::vector<ContactPoint>& points) {
@@ -363,13 +409,28 @@ void bind_pair_queries(py::module_& module) {
   require_made(settings);
   module.def("settings", &read_settings);
   module.attr("DEFAULTS") = QuerySettings();
-  py::class_<PairMemory> warm(module, "Warm",
-                              "The memory of one pair between frames: pass it as `warm` to depth. Nothing in it is\n"
-                              "trusted; a warm answer has the same proof as a cold one. Not for two threads at once.");
+  py::class_<PairMemory> warm(
+      module, "Warm",
+      "The memory of one pair between frames: pass it as `warm` to depth. Nothing in it is\n"
+      "trusted; a warm answer has the same proof as a cold one. While one thread asks with it,\n"
+      "another is Refused: 'in_use'.");
   require_made(warm);
   warm.def(py::init<>())
-      .def("clear", &PairMemory::clear, "Forgets everything.")
-      .def_property_readonly("nbytes", &PairMemory::bytes, "Bytes held.");
+      .def(
+          "clear",
+          [](PairMemory& memory) {
+            const PairMemory::Use use(memory);
+            memory.convex.clear();
+            memory.unions.clear();
+          },
+          "Forgets everything.")
+      .def_property_readonly(
+          "nbytes",
+          [](PairMemory& memory) {
+            const PairMemory::Use use(memory);
+            return memory.convex.memory_bytes() + memory.unions.memory_bytes();
+          },
+          "Bytes held.");
   module.def("ask", &ask_pair);
   module.def("ask_plain", &ask_plain);
   module.def("directional", &directional_pair);

@@ -2,7 +2,8 @@
 /// One pair asked: the settings that Python names, the workspace of a thread, and the answer as an object.
 #pragma once
 
-#include <cstddef>
+#include <atomic>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -27,13 +28,22 @@ struct Workspace {
 [[nodiscard]] Workspace& workspace();
 
 /// The memory of one pair between frames: Python's `Warm`.
-class PairMemory {
- public:
-  void clear();
-  [[nodiscard]] std::size_t bytes() const { return convex.memory_bytes() + unions.memory_bytes(); }
+struct PairMemory {
+  /// Holds a memory for one call of one thread. @throws Refused in_use while another thread holds it
+  class Use {
+   public:
+    explicit Use(PairMemory& memory);
+    ~Use() { memory_.in_use.store(false, std::memory_order_release); }
+    Use(const Use&) = delete;
+    Use& operator=(const Use&) = delete;
+
+   private:
+    PairMemory& memory_;
+  };
 
   WarmCertificate convex;
   WarmUnion unions;
+  std::atomic<bool> in_use{false};
 };
 
 struct QuerySettings {
@@ -44,12 +54,27 @@ struct QuerySettings {
 /// @param delta   None: the protocol's defaults (exact; 1e-6 for curved bodies, 1e-2 for unions).
 /// @param beyond  None: closest points at any distance. Unions are answered as if it were.
 /// @throws Refused bad_value with the known words.
-[[nodiscard]] QuerySettings read_settings(const std::string& method, py::handle delta, const std::string& bracket,
-                                          py::handle beyond);
+[[nodiscard]] QuerySettings read_settings(py::handle method, py::handle delta, py::handle bracket, py::handle beyond);
+
+/// The refusal of an answer that holds infinity or NaN, in the words of the line protocol.
+[[nodiscard]] Error past_doubles();
+[[nodiscard]] bool is_finite(const PenetrationDepth& answer);
+[[nodiscard]] bool is_finite(const ContactPoint& point);
+[[nodiscard]] bool is_finite(const ContactManifold& manifold);
+/// The answer of a directional depth, or why there is none.
+template <class Answer>
+[[nodiscard]] Expected<Answer> finite_or_error(const Expected<Answer>& answer) {
+  if (answer && !(std::isfinite(answer->depth) && std::isfinite(answer->lower) && std::isfinite(answer->upper) &&
+                  answer->normal.allFinite())) {
+    return past_doubles();
+  }
+  return answer;
+}
 
 /// Depth, or distance, of any two bodies. Holds no lock and may be called from any thread.
 /// @param memory  of the same two bodies; null: the pair is answered cold.
-/// @return unsupported where the method does not answer for these bodies; as `penetration_depth` of unions.
+/// @return unsupported where the method does not answer for these bodies; as `penetration_depth` of unions;
+/// out_of_range for an answer that is not finite.
 [[nodiscard]] Expected<UnionDepth> ask(const Body& a, const Pose& pose_a, const Body& b, const Pose& pose_b,
                                        const QuerySettings& settings, Workspace& space, PairMemory* memory = nullptr);
 

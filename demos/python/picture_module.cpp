@@ -21,6 +21,9 @@ namespace palette = render::palette;
 
 constexpr render::Insets kInsets{.left = 0.08, .right = 0.08, .top = 0.1, .bottom = 0.1};
 
+/// A camera squares lengths of the scene.
+constexpr double kLeastSize = 1e-100, kLargestSize = 1e100;
+
 using Bytes = py::array_t<std::uint8_t>;
 
 /// The value, or why the renderer refused.
@@ -81,6 +84,10 @@ render::Image draw_scene(const query::Node& line, render::Size size, render::Vie
     add_body(a.compound, pose_a, palette::kBodyA, 1, scene);
   }
   const render::Box box = render::bounds(scene);
+  if (const double size = (box.upper - box.lower).cwiseAbs().maxCoeff();
+      !(size >= kLeastSize && size <= kLargestSize)) {
+    refuse("out_of_range", "a picture shows bodies of a size from 1e-100 to 1e100", "picture");
+  }
   scene.ground.height = box.lower.z();
   scene.ground.scale_bar = false;
   scene.focus = box;
@@ -108,7 +115,7 @@ Bytes picture(const std::string& text, int width, int height, double azimuth, do
   }
   render::Image image;
   try {
-    const py::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     const query::ParsedLine parsed = query::parse_line(text);
     if (parsed.refusal) throw *parsed.refusal;
     const query::Node line(parsed.object);

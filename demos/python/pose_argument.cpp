@@ -1,5 +1,6 @@
 #include "python/pose_argument.hpp"
 
+#include <cmath>
 #include <string>
 
 namespace pd::python {
@@ -14,12 +15,18 @@ Mat3 matrix_of(const Array& array) {
   return rotation;
 }
 
+/// @param turn  the name of what says how the body is turned; the translation is named by its own
+Pose pose_or_refusal(const Expected<Pose>& pose, const std::string& argument, const char* turn) {
+  if (!pose) refuse(pose.error(), argument + (pose.error().where.starts_with("translation") ? "translation" : turn));
+  return *pose;
+}
+
 Pose pose_of_parts(py::handle rotation_value, py::handle translation_value, const std::string& argument) {
   const Mat3 rotation = rotation_value.is_none() ? Mat3(Mat3::Identity())
                                                  : matrix_of(read_array(rotation_value, argument + "rotation", {3, 3}));
   const Vec3 translation =
       translation_value.is_none() ? Vec3(Vec3::Zero()) : read_vector(translation_value, argument + "translation");
-  return value_of(Pose::from_matrix(rotation, translation), argument + "rotation");
+  return pose_or_refusal(Pose::from_matrix(rotation, translation), argument, "rotation");
 }
 
 Pose pose_of_array(py::handle value, std::string_view argument) {
@@ -42,7 +49,7 @@ Pose make_pose(const py::object& matrix, const py::object& rotation, const py::o
   const std::array<double, 4> numbers =
       scalar_first ? std::array{q.at(0), q.at(1), q.at(2), q.at(3)} : std::array{q.at(3), q.at(0), q.at(1), q.at(2)};
   const Vec3 t = translation.is_none() ? Vec3(Vec3::Zero()) : read_vector(translation, "translation");
-  return value_of(Pose::from_quaternion(numbers, t), name);
+  return pose_or_refusal(Pose::from_quaternion(numbers, t), "", name);
 }
 
 Array matrix4_of(const Pose& pose) {
@@ -70,6 +77,14 @@ py::dict keywords_of(const Pose& pose) {
   return keywords;
 }
 
+/// Equal poses have equal hashes, whatever the signs of their zeros.
+py::ssize_t hash_of(const Pose& pose) {
+  py::list numbers;
+  for (const double number : pose.rotation().reshaped()) numbers.append(number);
+  for (const double number : pose.translation()) numbers.append(number);
+  return py::hash(py::tuple(numbers));
+}
+
 std::string repr_of(const Pose& pose) {
   std::string text = "Pose(";
   for (const auto& [key, value] : keywords_of(pose)) {
@@ -89,6 +104,10 @@ Pose pose_of_keywords(const py::dict& keywords) {
 }  // namespace
 
 Expected<Pose> pose_of_matrix(const double* numbers) {
+  const auto place = [](int k) { return "[" + std::to_string(k / 4) + ", " + std::to_string(k % 4) + "]"; };
+  for (int k = 0; k < 16; ++k) {
+    if (!std::isfinite(numbers[k])) return Error{ErrorCode::non_finite, "a pose must be finite", place(k)};
+  }
   if (numbers[12] != 0 || numbers[13] != 0 || numbers[14] != 0 || numbers[15] != 1) {
     return Error{ErrorCode::bad_value,
                  numbers[3] == 0 && numbers[7] == 0 && numbers[11] == 0
@@ -99,7 +118,14 @@ Expected<Pose> pose_of_matrix(const double* numbers) {
   Mat3 rotation;
   rotation << numbers[0], numbers[1], numbers[2], numbers[4], numbers[5], numbers[6], numbers[8], numbers[9],
       numbers[10];
-  return Pose::from_matrix(rotation, {numbers[3], numbers[7], numbers[11]});
+  const Vec3 translation(numbers[3], numbers[7], numbers[11]);
+  Expected<Pose> pose = Pose::from_matrix(rotation, translation);
+  if (!pose && pose.error().where.starts_with("translation")) {
+    int row = 0;
+    translation.cwiseAbs().maxCoeff(&row);
+    return Error{pose.error().code, pose.error().message, place(4 * row + 3)};
+  }
+  return pose;
 }
 
 Pose read_pose(py::handle value, std::string_view argument) {
@@ -122,6 +148,10 @@ void bind_pose(py::module_& module) {
   require_made(type);
   type.def(py::init(&make_pose), py::arg("matrix") = py::none(), py::kw_only(), py::arg("rotation") = py::none(),
            py::arg("translation") = py::none(), py::arg("wxyz") = py::none(), py::arg("xyzw") = py::none())
+      .def(py::init([](const py::object&, const py::object&) -> Pose {
+             refuse("bad_value", "takes one 4x4 matrix; give Pose(rotation=R, translation=t)", "Pose");
+           }),
+           py::arg("matrix"), py::arg("translation"), py::pos_only())
       .def_property_readonly("matrix", &matrix4_of, "[4, 4] float64.")
       .def_property_readonly(
           "rotation", [](const Pose& pose) { return array_of(pose.rotation()); },
@@ -130,7 +160,7 @@ void bind_pose(py::module_& module) {
           "translation", [](const Pose& pose) { return array_of(pose.translation()); }, "[3].")
       .def("__repr__", &repr_of)
       .def("__eq__", [](const Pose& a, const py::object& b) { return py::isinstance<Pose>(b) && a == b.cast<Pose>(); })
-      .def("__hash__", [](const Pose& pose) { return py::hash(py::str(repr_of(pose))); })
+      .def("__hash__", &hash_of)
       .def("_keywords", &keywords_of)
       .def(py::pickle(&keywords_of, &pose_of_keywords));
 }

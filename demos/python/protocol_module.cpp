@@ -14,6 +14,7 @@
 #include <numeric>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -33,14 +34,14 @@ namespace pd::python {
 namespace {
 
 std::string answer(const std::string& line) {
-  const py::gil_scoped_release unlocked;
+  const Unlocked unlocked;
   thread_local query::Session session;
   return query::answer_line(line, session).text;
 }
 
 /// Lines answered by several threads, in their order; the same bytes for any number of threads.
 std::vector<std::string> answer_many(const std::vector<std::string>& lines, int threads) {
-  const py::gil_scoped_release unlocked;
+  const Unlocked unlocked;
   std::vector<std::string> answers(lines.size());
   for_each_row(
       static_cast<std::int64_t>(lines.size()), threads, [] { return query::Session(); },
@@ -122,7 +123,7 @@ py::list solid_parts(const std::string& path, py::handle scale, double tolerance
     std::optional<Compound> cover;
     query::MeshBody body;
     {
-      const py::gil_scoped_release unlocked;
+      const Unlocked unlocked;
       body = query::body_of_mesh(std::move(mesh), path, {.hull_words = "meshes=\"hull\"", .parts_words = ""});
       if (body.solid) cover = covering_parts(*body.solid, tolerance);
     }
@@ -264,13 +265,14 @@ py::tuple audit(const std::string& path, double tolerance, int threads, std::siz
   try {
     if (!fail_on.empty()) conditions = audit::parse_fail_conditions(fail_on);
   } catch (const query::Refusal& refusal) {
-    refuse(refusal.code, refusal.message, "fail_on");
+    constexpr std::string_view kFlag = "--fail-on: ";  // the command's name of it
+    refuse(refusal.code, refusal.message.substr(refusal.message.starts_with(kFlag) ? kFlag.size() : 0), "fail_on");
   }
   const Input input{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
   if (input.descriptor < 0) refuse("unreadable_file", std::strerror(errno), path);
   audit::Audit result;
   {
-    const py::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     Interrupts interrupts;
     const auto seen = [&](const auto&...) { interrupts.hear(); };
     audit::audit_record(input.descriptor, settings, seen, result);
@@ -282,7 +284,8 @@ py::tuple audit(const std::string& path, double tolerance, int threads, std::siz
   }
   const auto outcomes = audit::check(conditions, result.summary);
   if (result.end == audit::Audit::End::no_record) return py::make_tuple("", "", refusals);
-  return py::make_tuple(audit::audit_json(result, outcomes), audit::audit_table(result, outcomes, path), refusals);
+  return py::make_tuple(audit::audit_json(result, outcomes), audit::audit_table(result, outcomes, path, true),
+                        refusals);
 }
 
 }  // namespace

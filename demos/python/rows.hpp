@@ -13,6 +13,8 @@
 #include <thread>
 #include <vector>
 
+#include "python/interpreter_lock.hpp"
+
 namespace pd::python {
 
 /// Hears Ctrl-C while the interpreter's lock is released: Python runs its handlers only where it is asked to.
@@ -23,7 +25,7 @@ class Interrupts {
     const auto now = std::chrono::steady_clock::now();
     if (now < next_) return;
     next_ = now + std::chrono::milliseconds(50);
-    const pybind11::gil_scoped_acquire locked;
+    const Locked locked;
     if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
   }
 

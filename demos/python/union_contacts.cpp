@@ -1,5 +1,7 @@
 /// @file
 /// Python asks here for contacts of unions, and of meshes as sheets of triangles.
+#include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -18,7 +20,7 @@ struct Sheet {
 std::shared_ptr<Sheet> make_sheet(py::handle vertices, py::handle faces, py::handle margin) {
   const std::vector<Vec3> points = read_points(vertices, "vertices");
   std::vector<std::int32_t> offsets{0}, corners;
-  for (const auto& face : read_faces(faces)) {
+  for (const auto& face : read_faces(faces, points.size())) {
     corners.insert(corners.end(), face.begin(), face.end());
     offsets.push_back(static_cast<std::int32_t>(corners.size()));
   }
@@ -34,6 +36,17 @@ std::shared_ptr<Sheet> make_sheet(py::handle vertices, py::handle faces, py::han
 PieceBody pieces_of(const py::object& shape) {
   if (py::isinstance<Sheet>(shape)) return py::cast<Sheet&>(shape).pieces;
   return PieceBody::of_compound(shape.cast<const Body&>().compound());
+}
+
+bool all_finite(const UnionManifold& manifold) {
+  return manifold.normal.allFinite() &&
+         std::all_of(manifold.patches.begin(), manifold.patches.end(), [](const UnionContactPatch& patch) {
+           const auto end = patch.points.begin() + static_cast<std::ptrdiff_t>(patch.count);
+           return patch.normal.allFinite() &&
+                  std::all_of(patch.points.begin(), end, [](const UnionContactPoint& point) {
+                    return point.normal.allFinite() && is_finite(point.contact);
+                  });
+         });
 }
 
 /// Makes the fields that Python shows of a patch.
@@ -59,15 +72,15 @@ py::dict fields_of(const UnionContactPatch& patch) {
 /// Returns the patches, and how many contacts were covered. Without a patch, one without points holds the normal.
 py::tuple union_manifold_pair(const py::object& a, const py::object& b, py::handle pose_a, py::handle pose_b,
                               const UnionContactSettings& settings) {
-  if (!(settings.breaking_threshold >= 0)) refuse("bad_value", "a length >= 0", "breaking_threshold");
   const PieceBody first = pieces_of(a), second = pieces_of(b);
   const PosedPieces posed_a{&first, read_pose(pose_a, "pose_a")}, posed_b{&second, read_pose(pose_b, "pose_b")};
   const Expected<UnionManifold> found = [&] {
-    const py::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     UnionManifoldScratch scratch{workspace().scratch, workspace().manifold};
     return union_manifold(posed_a, posed_b, settings, scratch);
   }();
   if (!found) refuse(to_string(found.error().code), found.error().message, found.error().where);
+  if (!all_finite(*found)) refuse(past_doubles(), "pair");
   py::list patches;
   for (const UnionContactPatch& patch : found.value().patches) patches.append(fields_of(patch));
   if (patches.empty()) {

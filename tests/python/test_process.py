@@ -8,6 +8,7 @@ import threading
 
 import numpy as np
 import pdepth
+import pytest
 
 GEM = pdepth.ConvexPolytope(np.random.default_rng(0).normal(size=(20, 3)))
 BOX = pdepth.Box([1, 1, 1])
@@ -86,6 +87,49 @@ def test_the_lock_is_released(poses):
     done.set()
     clock.join()
     assert len(ticks) > 10
+
+
+@pytest.mark.parametrize("call", ["pdepth.depth(a, a, poses)", "pdepth.depth(a, a, poses, threads=1)",
+                                  "[pdepth.depth(a, a, delta=0.5) for _ in range(10**7)]",
+                                  "pdepth.query_many('width', [{'a': a}] * 3000)",
+                                  "[pdepth.query('width', a=a) for _ in range(10**6)]"])
+def test_python_ends_quietly_while_a_daemon_thread_asks(call):
+    script = f"""if True:
+        import pdepth, threading, time, numpy as np
+        a = pdepth.ConvexPolytope(np.random.RandomState(0).normal(size=(500, 3)))
+        poses = np.tile(np.eye(4), (30000, 1, 1))
+        threading.Thread(target=lambda: {call}, daemon=True).start()
+        time.sleep(0.3)
+        print("end")
+    """
+    for _ in range(3):
+        ran = subprocess.run([sys.executable, "-c", script], env={**os.environ, "PYTHONPATH": PACKAGE}, capture_output=True,
+                             text=True, timeout=60)
+        assert (ran.returncode, ran.stdout, ran.stderr) == (0, "end\n", "")
+
+
+def test_one_warm_in_two_threads_is_refused():
+    """One thread holds it through a long question of unions; others are told so, and nothing is lost."""
+    rng = np.random.default_rng(2)
+    parts = [(pdepth.ConvexPolytope(rng.normal(size=(40, 3))), pdepth.Pose(translation=4 * rng.normal(size=3))) for _ in range(40)]
+    pile, warm, refusals, asked = pdepth.Compound(parts), pdepth.Warm(), [], []
+
+    def ask(each):
+        for _ in range(5):
+            try:
+                asked.append(each())
+            except pdepth.Refused as error:
+                refusals.append((error.where, error.code))
+
+    calls = [lambda: pdepth.depth(pile, pile, warm=warm).depth] * 4
+    threads = [threading.Thread(target=ask, args=(call,)) for call in calls]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert set(refusals) == {("warm", "in_use")} and len(set(asked)) == 1
+    assert pdepth.depth(GEM, BOX, warm=warm).depth == pdepth.depth(GEM, BOX).depth and warm.nbytes > 0
+    warm.clear()
 
 
 def _child(matrices, queue):

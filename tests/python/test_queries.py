@@ -98,7 +98,7 @@ def test_bad_rows_are_errors_of_their_own(poses):
     (lambda p: pdepth.depth(GEM, BOX, method="best"), "method"),
     (lambda p: pdepth.directional_depth(GEM, BOX, [0, 0, 0]), "direction"),
     (lambda p: pdepth.directional_depth(GEM, BOX, [0, 0]), "direction"),
-    (lambda p: pdepth.depth(GEM, BOX, np.full((4, 4), np.nan)), "pose_a"),
+    (lambda p: pdepth.depth(GEM, BOX, np.full((4, 4), np.nan)), "pose_a[0, 0]"),
     (lambda p: pdepth.depth(GEM, BOX, threads=-1), "threads"),
     (lambda p: pdepth.depth(GEM, BOX, threads="all"), "threads"),
     (lambda p: pdepth.depth(GEM, BOX, axis=3), "axis"),

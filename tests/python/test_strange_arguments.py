@@ -201,3 +201,78 @@ def test_the_module_is_the_command():
                          capture_output=True, text=True)
     assert "No module named" not in ran.stderr
     assert ran.returncode == 0 or "this installation has the module alone" in ran.stderr
+
+
+@pytest.mark.parametrize("call,where,code,told", [
+    (lambda: pdepth.Pose(translation=[1e301, 0, 0]), "translation[0]", "out_of_range", "1e+301"),
+    (lambda: pdepth.Pose(wxyz=[1, 0, 0, 0], translation=[0, 1e301, 0]), "translation[1]", "out_of_range", "1e+301"),
+    (lambda: pdepth.depth(BOX, BOX, (np.eye(3), [0, 0, 1e301])), "pose_a.translation[2]", "out_of_range", "1e+301"),
+    (lambda: pdepth.Pose([[1, 0, 0, 0], [0, 1, 0, -1e301], [0, 0, 1, 0], [0, 0, 0, 1]]), "matrix[1, 3]", "out_of_range", "1e+301"),
+    (lambda: pdepth.depth(BOX, BOX, np.full((4, 4), np.nan)), "pose_a[0, 0]", "non_finite", "finite"),
+    (lambda: pdepth.Pose(np.eye(3), [0, 0, 0]), "Pose", "bad_value", "rotation=R"),
+    (lambda: pdepth.depth(BOX, BOX, method=None), "method", "bad_value", "known: auto, "),
+    (lambda: pdepth.depth(BOX, BOX, bracket=3), "bracket", "bad_value", "not 3"),
+    (lambda: pdepth.ConvexPolytope.from_faces(CORNERS, [[0, 1, 2**40]]), "faces[0]", "bad_faces", "outside 0..3"),
+    (lambda: pdepth.StarBody(CORNERS, [[0, 1, 2], [0, 1, 2**64 - 1]], [0, 0, 0]), "faces[1]", "bad_faces", "outside 0..3"),
+    (lambda: pdepth.Sheet(CORNERS, [[0, 1, -1]]), "faces[0]", "bad_faces", "outside 0..3"),
+    (lambda: pdepth.audit(RECORD, fail_on="foo=0"), "fail_on", "bad_value", "fail_on: there is no \"foo\""),
+    (lambda: pdepth.ConvexPolytope.from_mesh(b"/tmp/\xff.obj".decode(errors="surrogateescape")), "/tmp/\udcff.obj",
+     "unreadable_file", ""),
+    (lambda: pdepth.audit(b"/tmp/\xff.jsonl".decode(errors="surrogateescape")), "/tmp/\udcff.jsonl", "unreadable_file", ""),
+])
+def test_the_compiled_part_refuses_each_by_name(call, where, code, told):
+    test_each_is_refused_by_name(call, where, code, told)
+
+
+def test_a_pose_that_is_not_finite_has_one_code_in_batches():
+    poses = TWO.copy()
+    poses[1] = np.nan
+    refused = [0, pdepth.ERRORS.index("non_finite")]
+    for found in (pdepth.depth(BOX, BOX, poses), pdepth.directional_depth(BOX, BOX, [1, 0, 0], poses),
+                  pdepth.contact_manifold(BOX, BOX, poses), pdepth.derivatives(BOX, BOX, poses), pdepth.hull(BOX, poses)):
+        assert found.error.tolist() == refused
+
+
+def test_equal_poses_have_equal_hashes():
+    one, other = pdepth.Pose(wxyz=[1, 0, 0, 0]), pdepth.Pose(wxyz=[1, 0, 0, -0.0], translation=[0, -0.0, 0])
+    assert one == other and len({one, other}) == 1 and len({one, pdepth.Pose(translation=[1, 0, 0])}) == 2
+
+
+def test_the_judges_table_names_what_python_was_given():
+    table = pdepth.audit(RECORD).table
+    assert "--report" not in table and "/tmp/" not in table and "record    records" in table and "worst" in table
+
+
+def past_doubles():
+    """Pairs whose answers hold infinity, NaN, or a bracket that is none."""
+    e, z = 1e-100, 1e-200
+    union = pdepth.Compound([pdepth.Cone(e, e), (pdepth.Cylinder(e, e), pdepth.Pose(translation=[e, 3 * e, e]))])
+    a = pdepth.ConvexPolytope(z * np.array([[-1, -3, -2], [0, -3, -3], [-3, 2, 2], [0, -1, 0]]))
+    b = pdepth.ConvexPolytope(z * np.array([[-2, -1, 2], [3, -3, 1], [1, 2, 3], [-3, -1, -2], [-1, 3, -1]]), margin=1e200)
+    c = pdepth.ConvexPolytope(1e-100 * np.array([[1, 0, 1], [-2, -1, -1], [1, 2, 1], [-2, -1, -2]]))
+    d = pdepth.SphereHull([[-3, 2, 3, 1], [1, 1, 1, 3], [2, -1, -3, 1]], margin=1e100)
+    return [(union, pdepth.Box([1.6, 8.9, 1.4]), None), (a, b, pdepth.Pose(wxyz=[0.6, 0, 0.8, 0])), (c, d, None)]
+
+
+@pytest.mark.parametrize("a,b,pose", past_doubles())
+def test_an_answer_past_the_range_of_doubles_is_refused_or_right(a, b, pose):
+    """The core may learn to answer these; whatever it says is finite and in its bracket."""
+    poses = [pose, pose]
+    rows = pdepth.depth(a, b, poses)
+    try:
+        found = pdepth.depth(a, b, pose)
+    except pdepth.Refused as error:
+        assert (error.where, error.code) == ("pair", "out_of_range") and "bring the sizes nearer" in str(error)
+        assert (rows.error == pdepth.ERRORS.index("out_of_range")).all() and np.isnan(rows.depth).all()
+        return
+    assert not rows.error.any() and rows.depth[0] == found.depth
+    assert 0 < found.lower <= found.depth <= found.upper < np.inf and np.isfinite([*found.witness_a, *found.translation]).all()
+
+
+def test_a_picture_of_a_size_that_no_camera_holds_is_refused():
+    pytest.importorskip("pdepth._picture", reason="built without the renderer")
+    for size in (1e-290, 1e200):
+        with pytest.raises(pdepth.Refused) as caught:
+            pdepth.picture(pdepth.Box([size] * 3), size=(32, 32))
+        assert caught.value.code == "out_of_range"
+    assert pdepth.picture(pdepth.Box([1e-99] * 3), size=(32, 32)).std() > 5
