@@ -174,6 +174,29 @@ TEST(SolidBeside, APolytopeIsAskedAsASolid) {
   EXPECT_EQ(one.translation, other.translation);
 }
 
+TEST(SolidBeside, SubnormalSolidsAreAnsweredAsLargeOnes) {
+  Scratch scratch;
+  for (const int exponent : {0, -1000, -1001, -1022, -1023, -1030, -1050}) {
+    SCOPED_TRACE(exponent);
+    const double s = std::ldexp(1.0, exponent);
+    const ConvexPolytope cube = *ConvexPolytope::box({s, s, s});
+    const MeshSolid solid = *MeshSolid::from_polytope(cube);
+    const ConvexShape box(cube), ball = *ConvexShape::sphere(0.25 * s);
+    const ConvexShape swept = *ConvexShape(*ConvexPolytope::box({0.25 * s, 0.25 * s, 0.25 * s})).with_margin(0.125 * s);
+    for (const ConvexShape* shape : {&ball, &swept}) {
+      const Pose pose = moved({0.25 * s, 0.125 * s, 0});
+      const SolidDepth found = *penetration_depth(PosedSolid{&solid, Pose()}, PosedShape{shape, pose}, scratch);
+      const PenetrationDepth known = penetration_depth({&box, Pose()}, {shape, pose}, scratch);
+      EXPECT_EQ(*classify(PosedSolid{&solid, Pose()}, PosedShape{shape, pose}, scratch), ContactClass::overlapping);
+      ASSERT_EQ(found.contact, ContactClass::overlapping);
+      EXPECT_TRUE(found.bracket_reached);
+      EXPECT_LE(found.lower, known.upper);
+      EXPECT_GE(found.upper, known.lower);
+      EXPECT_LE(found.upper, 1.0001 * known.upper);
+    }
+  }
+}
+
 TEST(SolidBeside, WhatIsRefused) {
   const MeshSolid solid = hollow_cube();
   const ConvexShape ball = *ConvexShape::sphere(1);

@@ -136,9 +136,8 @@ class ReachSearch {
   ReachSearch(const PosedSolids& alone, const ReachGoal& goal) : alone_(alone), goal_(goal) {}
 
   ReachBracket run(const ConvexPolytope& polytope) {
-    const double scale = std::ldexp(1.0, -alone_.scale_exponent());
-    goal_.enough *= scale;
-    const auto vertex = [&](std::int32_t v) -> Vec3 { return polytope.vertex(v) * scale; };
+    goal_.enough = alone_.inside(goal_.enough);
+    const auto vertex = [&](std::int32_t v) { return alone_.inside(polytope.vertex(v)); };
     ReachPiece all;
     all.box.low = all.box.high = vertex(0);
     for (int f = 0; f < polytope.num_facets(); ++f) {

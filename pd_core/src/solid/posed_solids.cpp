@@ -67,7 +67,8 @@ PosedSolids::PosedSolids(const MeshSolid& a, const Pose& pose_a, const MeshSolid
   const double size =
       std::max({largest_coordinate(a), largest_coordinate(b), 2 * std::min(apart.cwiseAbs().maxCoeff(), 0x1p1022)});
   scale_exponent_ = size > 0 ? std::ilogb(size) : 0;
-  scale_ = std::ldexp(1.0, -scale_exponent_);
+  if (scale_exponent_ < -1000) lift_ = 0x1p100;
+  scale_ = std::ldexp(1.0 / lift_, -scale_exponent_);
   for (int k = 0; k < 3; ++k) {
     const DoubleDouble offset = two_sum(std::ldexp(pose_b.translation()[k], -scale_exponent_),
                                         -std::ldexp(pose_a.translation()[k], -scale_exponent_));
@@ -75,7 +76,7 @@ PosedSolids::PosedSolids(const MeshSolid& a, const Pose& pose_a, const MeshSolid
     b_.offset[k] = moved.hi;
     b_.exact = b_.exact && offset.lo == 0 && moved.lo == 0;
   }
-  const double largest = 3 * (largest_coordinate(a) + largest_coordinate(b)) * scale_ + b_.offset.cwiseAbs().maxCoeff();
+  const double largest = 3 * inside(largest_coordinate(a) + largest_coordinate(b)) + b_.offset.cwiseAbs().maxCoeff();
   error_ = 32 * kUnitRoundoff * largest;
 }
 
@@ -84,7 +85,7 @@ PosedPoint PosedSolids::point(Body body, std::int32_t vertex) const {
   PosedPoint out;
   out.body = body;
   out.vertices[0] = vertex;
-  const Vec3 turned = p.rotation * (p.solid->vertex(vertex) * scale_);
+  const Vec3 turned = p.rotation * inside(p.solid->vertex(vertex));
   out.x = turned + p.offset;
   out.exact = p.exact;
   for (int k = 0; k < 3 && out.exact; ++k) {
@@ -116,7 +117,7 @@ PosedTriangle PosedSolids::corners(Body body, std::int32_t triangle) const {
 
 TriangleBox PosedSolids::box(Body body, const TriangleNode& node) const {
   const Placing& p = placing(body);
-  const Vec3 low = node.low * scale_, high = node.high * scale_;
+  const Vec3 low = inside(node.low), high = inside(node.high);
   const Vec3 centre = p.rotation * (0.5 * (low + high)) + p.offset;
   const Vec3 half = (p.absolute * (0.5 * (high - low))).array() + error_;
   return {centre - half, centre + half};

@@ -46,6 +46,8 @@ class PosedSolids {
   [[nodiscard]] const Pose& pose(Body body) const { return *placing(body).pose; }
   /// Lengths inside = lengths outside * 2^-scale_exponent.
   [[nodiscard]] int scale_exponent() const { return scale_exponent_; }
+  [[nodiscard]] double inside(double length) const { return length * lift_ * scale_; }
+  [[nodiscard]] Vec3 inside(const Vec3& own) const { return own * lift_ * scale_; }
   /// At most the error of a coordinate of a point in doubles.
   [[nodiscard]] double error() const { return error_; }
 
@@ -96,7 +98,7 @@ class PosedSolids {
   Placing a_, b_;
   Vec3 way_;
   int scale_exponent_ = 0;
-  double scale_ = 1;
+  double lift_ = 1, scale_ = 1;  ///< their product is 2^-scale_exponent, which no double holds for subnormal lengths
   double error_ = 0;
   mutable std::optional<ExactPlacing> exact_;
   mutable std::int64_t exact_signs_ = 0;

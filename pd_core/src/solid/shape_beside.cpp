@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "depth/difference/smooth_difference.hpp"
@@ -71,7 +72,8 @@ std::optional<Error> ShapeBeside::arrange() {
   const auto& vertices = corner_->vertices();
   corner_vertex_ = static_cast<std::int32_t>(std::find(vertices.begin(), vertices.end(), inner_) - vertices.begin());
   solids_.emplace(*a_.solid, a_.pose, *box_, b_.pose);
-  slack_ = std::ldexp(16 * solids_->error(), solids_->scale_exponent());
+  // Lengths outside are whole multiples of the least double, and a sum of a few of them is rounded to one.
+  slack_ = std::ldexp(16 * solids_->error(), solids_->scale_exponent()) + 4 * std::numeric_limits<double>::denorm_min();
   return std::nullopt;
 }
 
@@ -156,10 +158,7 @@ SurfaceDepth ShapeBeside::depth_at(const Vec3& x, const SurfaceDepth& /*near*/, 
   return depth_at(x);
 }
 
-std::vector<Vec3> ShapeBeside::landmarks() const {
-  const double scale = std::ldexp(1.0, -solids_->scale_exponent());
-  return {scale * near_b_.apply(inner_)};
-}
+std::vector<Vec3> ShapeBeside::landmarks() const { return {solids_->inside(near_b_.apply(inner_))}; }
 
 StandingBody::Meeting ShapeBeside::meeting_after(const Vec3& way) {
   const Vec3 translation = a_.pose.translation() + way;
@@ -170,8 +169,7 @@ StandingBody::Meeting ShapeBeside::meeting_after(const Vec3& way) {
   if (found.triangle < 0) return out;
   if (found.contact == ContactClass::separated) out.contact = ContactClass::touching;
   for (const PosedPoint& p : solids_->corners(Body::a, found.triangle)) out.corners_a.push_back(p.x);
-  out.corners_b.push_back(std::ldexp(1.0, -solids_->scale_exponent()) *
-                          (found.answer.witness_b - a_.pose.translation()));
+  out.corners_b.push_back(solids_->inside(found.answer.witness_b - a_.pose.translation()));
   return out;
 }
 

@@ -37,7 +37,7 @@ SurfaceDepth DepthProbe::signed_depth(const Vec3& x, double at_most, double know
 
 bool DepthProbe::holds(const Vec3& x) const {
   PosedPoint own;
-  own.x = std::ldexp(1.0, -alone_.scale_exponent()) * solids_.in_own_frame(body_, x);
+  own.x = alone_.inside(solids_.in_own_frame(body_, x));
   own.exact = true;
   const PointPlace place = place_in(alone_, Body::a, own);
   return !place.on_surface && place.winding > 0;
