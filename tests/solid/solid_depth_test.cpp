@@ -174,5 +174,15 @@ TEST(SolidParts, OuterPartsCoverTheSolidAtEveryTolerance) {
   }
 }
 
+TEST(SolidParts, RefusesATolerance) {
+  const MeshSolid solid = *MeshSolid::from_polytope(*ConvexPolytope::box({1, 1, 1}));
+  for (const double tolerance : {-1.0, std::nan(""), HUGE_VAL}) {
+    const auto parts = SolidParts::from_solid(solid, {.tolerance = tolerance});
+    ASSERT_FALSE(parts) << tolerance;
+    EXPECT_EQ(parts.error().code, ErrorCode::bad_value);
+    EXPECT_EQ(parts.error().where, "tolerance");
+  }
+}
+
 }  // namespace
 }  // namespace pd::test

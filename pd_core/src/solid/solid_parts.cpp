@@ -208,6 +208,9 @@ std::vector<Compound::Part> without_covered(std::vector<Compound::Part> parts, d
 
 Expected<SolidParts> SolidParts::from_solid(const MeshSolid& solid, const SolidPartsLimits& limits) {
   const detail::FloatingPointGuard guard;
+  if (!(limits.tolerance >= 0 && std::isfinite(limits.tolerance))) {
+    return Error{ErrorCode::bad_value, "a tolerance must be a length >= 0", "tolerance"};
+  }
   Partition partition(solid, limits);
   const auto pieces = partition.run();
   if (!pieces) {

@@ -35,7 +35,8 @@ struct SolidPartsLimits {
 /// Immutable.
 class SolidParts {
  public:
-  /// @return limit_exceeded where the solid has more parts, or its faces more pieces, than `limits` allows.
+  /// @return limit_exceeded where the solid has more parts, or its faces more pieces, than `limits` allows; bad_value
+  /// ("tolerance").
   static Expected<SolidParts> from_solid(const MeshSolid& solid, const SolidPartsLimits& limits = {});
 
   /// Lies in the solid.
