@@ -249,6 +249,16 @@ TEST(UnionOfParts, ASlotOfZeroWidthIsNoWayOut) {
   const UnionDepth held = *penetration_depth(here, {&exact, Pose()}, scratch);
   EXPECT_EQ(held.contact, ContactClass::overlapping);
   EXPECT_EQ(held.depth, 1.5);
+  const UnionDepth by_octree =
+      *penetration_depth(here, {&exact, Pose()}, scratch, {.method = UnionMethod::octree, .delta = 0.05});
+  EXPECT_EQ(by_octree.contact, ContactClass::overlapping);
+  EXPECT_LE(by_octree.lower, 1.5);
+  EXPECT_GE(by_octree.upper, 1.5);
+  EXPECT_LE(by_octree.upper, 1.05 * by_octree.lower);
+  const UnionSettings few{.method = UnionMethod::octree, .max_facets = 1};
+  const auto refused = penetration_depth(here, {&exact, Pose()}, scratch, few);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::limit_exceeded);
   const auto up = directional_depth(here, {&exact, Pose()}, Vec3::UnitY(), scratch);
   EXPECT_EQ(up->depth, 1.5);
   EXPECT_EQ(*point_in_difference(here, {&exact, Pose()}, Vec3(0, 1.5, 0), scratch), ContactClass::touching);

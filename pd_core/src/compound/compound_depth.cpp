@@ -125,7 +125,7 @@ Expected<UnionDepth> penetration_depth(const PosedCompound& a, const PosedCompou
   std::optional<detail::UnionMemory> memory;
   if (warm != nullptr && facets) memory.emplace(warm->state(), pair, exchanged);
   Expected<UnionDepth> solved = facets ? solve_by_facets(pair, scratch, settings, memory ? &*memory : nullptr)
-                                       : Expected<UnionDepth>(detail::solve_by_octree(pair, scratch, settings));
+                                       : detail::solve_by_octree(pair, scratch, settings);
   if (!solved) return solved.error();
   UnionDepth out = std::move(solved).value();
   pair.name_parts(out.part_a, out.part_b);

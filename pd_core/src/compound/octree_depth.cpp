@@ -415,14 +415,21 @@ class Octree {
 
 }  // namespace
 
-UnionDepth solve_by_octree(const UnionPair& pair, Scratch& scratch, const UnionSettings& settings) {
+Expected<UnionDepth> solve_by_octree(const UnionPair& pair, Scratch& scratch, const UnionSettings& settings) {
   UnionDepth out;
   const PairsResult pairs = classify_pairs(pair, scratch, std::min(settings.delta, 1e-6), nullptr, out.work);
   static_cast<PenetrationDepth&>(out) = pairs.nearest;
   out.part_a = pairs.part_a;
   out.part_b = pairs.part_b;
-  if (pairs.contact != ContactClass::overlapping) return out;
   if (pair.a.size() == 1 && pair.b.size() == 1) return out;  // one convex pair: its own answer
+  ContactClass contact = pairs.contact;
+  if (contact == ContactClass::touching && pair.polytopes) {
+    std::optional<FacetsAnswer::Where> where;
+    const Expected<ContactClass> exact = FacetsAnswer(pair, settings, out.work).class_of_touching(where);
+    if (!exact) return exact.error();
+    contact = *exact;
+  }
+  if (contact != ContactClass::overlapping) return out;
   Octree(pair, scratch, settings, out).run(pairs);
   return out;
 }

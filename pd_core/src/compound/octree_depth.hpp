@@ -7,6 +7,7 @@
 namespace pd::detail {
 
 /// As `penetration_depth` of compounds, for any parts.
-[[nodiscard]] UnionDepth solve_by_octree(const UnionPair& pair, Scratch& scratch, const UnionSettings& settings);
+[[nodiscard]] Expected<UnionDepth> solve_by_octree(const UnionPair& pair, Scratch& scratch,
+                                                   const UnionSettings& settings);
 
 }  // namespace pd::detail
