@@ -232,6 +232,45 @@ TEST(SweptDepth, WaysOutForGoodLieBetweenPolygonsToo) {
   EXPECT_LE(wide, cases / 8 + 1) << "passages as wide as Q";
 }
 
+TEST(SweptDepth, DirectionsOfAnyLength) {
+  const auto r = *PolygonDifference::of(made({{{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}}}),
+                                        made({{{0, 0}, {1, 0}, {1, 1}, {0, 1}}}));
+  const PlanarMargins margins{0.1, 0.1};
+  for (const Leave leave : {Leave::first_exit, Leave::straight, Leave::escape}) {
+    const PolygonDepth one = *r.swept_depth_along({0.3, 0.2}, {1, 1}, margins, leave);
+    for (const double size : {5e-324, 0x1p-1030, 1e-300, 1e300}) {
+      const PolygonDepth other = *r.swept_depth_along({0.3, 0.2}, {size, size}, margins, leave);
+      EXPECT_NEAR(other.depth, one.depth, 1e-9) << size;
+      EXPECT_NEAR(other.normal[0], std::sqrt(0.5), 1e-9) << size;
+      EXPECT_NEAR(other.normal[1], std::sqrt(0.5), 1e-9) << size;
+      EXPECT_LE(other.lower, one.upper);
+      EXPECT_GE(other.upper, one.lower);
+    }
+  }
+}
+
+TEST(SweptDepth, RefusedPlacementsAndDirections) {
+  const auto r = *PolygonDifference::of(made({{{0, 0}, {4, 0}, {4, 4}, {3, 1}}}), made(kSquare));
+  const double nan = std::nan("");
+  const PlanarMargins margins{0.1, 0.1};
+  for (const Leave leave : {Leave::first_exit, Leave::straight, Leave::escape}) {
+    for (const Point2& placement : {Point2{nan, 0}, Point2{0, HUGE_VAL}}) {
+      EXPECT_EQ(r.swept_depth(placement, margins, leave).error().code, ErrorCode::non_finite);
+      EXPECT_EQ(r.swept_depth_along(placement, {1, 0}, margins, leave).error().where, "placement");
+    }
+    for (const Point2& direction : {Point2{nan, 0}, Point2{0, HUGE_VAL}}) {
+      EXPECT_EQ(r.swept_depth_along({0, 0}, direction, margins, leave).error().code, ErrorCode::non_finite);
+    }
+    EXPECT_EQ(r.swept_depth_along({0, 0}, {0, 0}, margins, leave).error().code, ErrorCode::zero_direction);
+    EXPECT_EQ(r.swept_depth({1e301, 0}, margins, leave).error().code, ErrorCode::out_of_range);
+    // Far away the disc is not asked for.
+    EXPECT_EQ(r.swept_depth({1e300, 1e300}, margins, leave)->contact, PlanarContact::separated);
+    EXPECT_EQ(r.swept_depth({1e300, 1e300}, margins, leave)->depth, 0);
+  }
+  EXPECT_EQ(r.swept_depth({0, 0}, {0.1, 1e300}, Leave::escape).error().where, "q.margin");
+  EXPECT_EQ(r.swept_depth({0, 0}, {1e300, 0.1}, Leave::straight).error().where, "p.margin");
+}
+
 TEST(SweptDepth, Refusals) {
   const auto r = *PolygonDifference::of(made({{{0, 0}, {4, 0}, {4, 4}, {3, 1}}}), made(kSquare));
   EXPECT_EQ(r.swept_depth({0, 0}, {-1, 0}).error().code, ErrorCode::bad_value);

@@ -169,7 +169,8 @@ TEST(TouchingRings, PointsAreSharedAndSegmentsAreNot) {
   expect_refused(frame_with({{{2, 0}, {5, 0}, {3, 2}}}), "holes[0][0]", "overlap along a segment");
   expect_refused(frame_with({{{1, 1}, {3, 1}, {2, 3}}, {{2, 1}, {4, 1}, {4, 0.5}}}), "holes[1][0]", "overlap");
   expect_refused(frame_with({{{8, 2}, {10, 1}, {10, 3}}}), "holes[0][0]", "outside");
-  expect_refused(frame_with({{{1, 1}, {7, 4}, {1, 7}}, {{1, 1}, {3, 3}, {2, 4}}}), "holes[1][0]", "inside the hole");
+  expect_refused(frame_with({{{1, 1}, {7, 4}, {1, 7}}, {{1, 1}, {3, 3}, {2, 4}}}), "holes[1][0]",
+                 "holes[1] starts inside holes[0];");
   expect_refused(frame_with({{{4, -1}, {5, 0}, {4, 2}, {3, 0}}}), "outer[0]", "cross");  // through its own vertices
 }
 

@@ -6,6 +6,7 @@
 #include "numeric/floating_point_guard.hpp"
 #include "planar/chain_search.hpp"
 #include "planar/edge_distance.hpp"
+#include "planar/refused_point.hpp"
 #include "planar/rounded_crossing.hpp"
 
 namespace pd {
@@ -14,22 +15,6 @@ namespace {
 
 using detail::Dyadic;
 using detail::ExitEdge;
-
-Expected<Point2> checked(const Point2& v, const char* where) {
-  for (const double c : v) {
-    if (!std::isfinite(c)) return Error{ErrorCode::non_finite, "two finite numbers are needed", where};
-    if (std::abs(c) > 1e300) return Error{ErrorCode::out_of_range, "coordinates are limited to 1e300", where};
-  }
-  return v;
-}
-
-Expected<Point2> checked_direction(const Point2& d) {
-  if (const auto finite = checked(d, "direction"); !finite) return finite.error();
-  if (d[0] == 0 && d[1] == 0) {
-    return Error{ErrorCode::zero_direction, "a direction needs a length other than zero", "direction"};
-  }
-  return d;
-}
 
 /// |t| |d| of a crossing, rounded down and up.
 struct Rounded {
@@ -124,8 +109,8 @@ class Line {
 Expected<PlanarDepth> convex_directional_depth(const ConvexPolygon& p, const ConvexPolygon& q,
                                                const Point2& displacement, const Point2& direction) {
   const detail::FloatingPointGuard guard;
-  if (const auto y = checked(displacement, "displacement"); !y) return y.error();
-  if (const auto d = checked_direction(direction); !d) return d.error();
+  if (auto refused = detail::refused_point(displacement, "displacement")) return *std::move(refused);
+  if (auto refused = detail::refused_direction(direction, "direction")) return *std::move(refused);
   Line line(p, q, displacement, direction);
   PlanarDepth out;
   out.contact = line.contact();
@@ -143,8 +128,8 @@ Expected<PlanarDepth> convex_directional_depth(const ConvexPolygon& p, const Con
 Expected<PlanarCrossing> convex_crossing(const ConvexPolygon& p, const ConvexPolygon& q, const Point2& displacement,
                                          const Point2& direction) {
   const detail::FloatingPointGuard guard;
-  if (const auto y = checked(displacement, "displacement"); !y) return y.error();
-  if (const auto d = checked_direction(direction); !d) return d.error();
+  if (auto refused = detail::refused_point(displacement, "displacement")) return *std::move(refused);
+  if (auto refused = detail::refused_direction(direction, "direction")) return *std::move(refused);
   Line line(p, q, displacement, direction);
   PlanarCrossing out;
   out.meets = line.ahead().has_value();
@@ -164,14 +149,14 @@ Expected<PlanarCrossing> convex_crossing(const ConvexPolygon& p, const ConvexPol
 Expected<PlanarContact> convex_intersection(const ConvexPolygon& p, const ConvexPolygon& q,
                                             const Point2& displacement) {
   const detail::FloatingPointGuard guard;
-  if (const auto y = checked(displacement, "displacement"); !y) return y.error();
+  if (auto refused = detail::refused_point(displacement, "displacement")) return *std::move(refused);
   const Point2 across = {1, 0};
   return Line(p, q, displacement, across).contact();
 }
 
 Expected<PlanarDepth> convex_depth(const ConvexPolygon& p, const ConvexPolygon& q, const Point2& displacement) {
   const detail::FloatingPointGuard guard;
-  if (const auto y = checked(displacement, "displacement"); !y) return y.error();
+  if (auto refused = detail::refused_point(displacement, "displacement")) return *std::move(refused);
   const ConvexDifference difference = convex_difference(p, q);
   PlanarDepth out;
   out.contact = PlanarContact::overlapping;

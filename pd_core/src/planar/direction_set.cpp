@@ -133,13 +133,7 @@ Expected<DirectionSet> DirectionSet::of(const PolygonDifference& difference, std
   for (std::size_t k = 0; k < directions.size(); ++k) {
     const Point2& d = directions[k];
     const std::string where = "directions[" + std::to_string(k) + "]";
-    for (const double c : d) {
-      if (!std::isfinite(c)) return Error{ErrorCode::non_finite, "two finite numbers are needed", where};
-      if (std::abs(c) > 1e300) return Error{ErrorCode::out_of_range, "coordinates are limited to 1e300", where};
-    }
-    if (d[0] == 0 && d[1] == 0) {
-      return Error{ErrorCode::zero_direction, "a direction needs a length other than zero", where};
-    }
+    if (auto refused = detail::refused_direction(d, where)) return *std::move(refused);
     state->directions.push_back(d);
     state->slabs.emplace_back(MonotoneBoundary(state->difference->boundary, state->difference->turned(d)));
   }

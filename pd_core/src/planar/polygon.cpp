@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <string>
 
 #include "pd/numeric/predicates.hpp"
@@ -91,9 +92,11 @@ void orient_ring(CleanRing& ring, bool counter_clockwise) {
   }
 }
 
-std::string describe(const detail::RingFault& fault, const std::string& edge, const std::string& other) {
+std::string describe(detail::RingFault::Kind kind, Polygon::VertexId first,
+                     const std::optional<Polygon::VertexId>& second) {
   using Kind = detail::RingFault::Kind;
-  switch (fault.kind) {
+  const std::string edge = edge_name(first), other = second ? edge_name(*second) : "";
+  switch (kind) {
     case Kind::crossing:
       return "the edges that start at " + edge + " and " + other + " cross; rings must not cross";
     case Kind::overlapping:
@@ -103,12 +106,12 @@ std::string describe(const detail::RingFault& fault, const std::string& edge, co
     case Kind::meeting:
       return "the ring touches itself at " + edge + " and " + other + "; only different rings may share a point";
     case Kind::hole_outside:
-      return "the hole of " + edge + " lies outside the outer ring or reaches out of it";
+      return ring_name(first.ring) + " lies outside the outer ring or reaches out of it";
     case Kind::hole_in_hole:
-      return "the hole of " + edge + " starts inside the hole of " + other +
+      return ring_name(first.ring) + " starts inside " + ring_name(second->ring) +
              "; holes must be apart but for single points";
     case Kind::cut_in_two:
-      return "the interior is cut in two by rings that touch, of which one is the hole of " + edge +
+      return "the interior is cut in two by rings that touch, of which one is " + ring_name(first.ring) +
              "; give each connected part as a polygon of its own";
   }
   return {};
@@ -170,8 +173,8 @@ Expected<Polygon> Polygon::from_rings(std::span<const Point2> outer, std::span<c
     const bool edges = fault.kind == Kind::crossing || fault.kind == Kind::overlapping || fault.kind == Kind::touching;
     const auto named = [&](int v) { return edges ? r.caller_edge(v) : r.caller_id(v); };
     const VertexId first = named(fault.edge);
-    const std::string other = fault.other_edge < 0 ? "" : edge_name(named(fault.other_edge));
-    return Error{ErrorCode::bad_value, describe(fault, edge_name(first), other), edge_name(first)};
+    const auto second = fault.other_edge < 0 ? std::nullopt : std::optional(named(fault.other_edge));
+    return Error{ErrorCode::bad_value, describe(fault.kind, first, second), edge_name(first)};
   }
   if (check.shared_points) r.take(std::move(links));
   r.convex_ = r.num_rings() == 1;

@@ -110,22 +110,10 @@ PolygonDepth PolygonDifference::straight_escape_depth(const Point2& placement) c
   return answer;
 }
 
-namespace {
-
-/// A direction far below 1 times a power of two, exactly: rays divide by it.
-Point2 raised(const Point2& direction) {
-  const double size = std::max(std::abs(direction[0]), std::abs(direction[1]));
-  if (size >= 0x1p-400) return direction;
-  const int exponent = -std::ilogb(size);
-  return {std::ldexp(direction[0], exponent), std::ldexp(direction[1], exponent)};
-}
-
-}  // namespace
-
 PolygonDepth PolygonDifference::depth_along(const Point2& placement, const Point2& given, Leave leave,
                                             std::int64_t* boxes) const {
   const State& s = *state_;
-  const Point2 direction = raised(given);
+  const Point2 direction = detail::raised(given);
   const Point2 y = s.turned(placement), d = s.turned(direction);
   PolygonDepth answer;
   std::optional<BoundaryPoint> touched, first;

@@ -11,6 +11,7 @@
 #include "pd/planar/polygon_depth.hpp"
 #include "planar/difference_state.hpp"
 #include "planar/polygon_answer.hpp"
+#include "planar/refused_point.hpp"
 
 namespace pd {
 
@@ -44,7 +45,7 @@ struct Distance {
 class SweptDifference {
  public:
   SweptDifference(const PolygonDifference::State& state, const PlanarMargins& margins)
-      : s_(state), radius_(Dyadic(margins.p) + Dyadic(margins.q)) {
+      : s_(state), margins_(margins), radius_(Dyadic(margins.p) + Dyadic(margins.q)) {
     const double rounded = margins.p + margins.q;
     const int off = (radius_ - Dyadic(rounded)).sign();
     low_ = off < 0 ? std::nextafter(rounded, 0) : rounded;
@@ -59,6 +60,7 @@ class SweptDifference {
   }
 
   [[nodiscard]] bool convex() const { return s_.p.convex() && s_.q.convex(); }
+  [[nodiscard]] bool one_convex() const { return s_.p.convex() || s_.q.convex(); }
 
   /// Class, feature and normal, and for convex polygons the depth; else its lower bound alone.
   [[nodiscard]] PolygonDepth bounded(const Point2& y) const {
@@ -94,12 +96,23 @@ class SweptDifference {
     answer.feature = feature(distance(best_));
   }
 
+  /// The box around R swept does not hold y, which therefore is free to leave for good.
+  [[nodiscard]] bool beside_box(const Point2& y) const {
+    const double reach = high_ + air(y, high_);
+    return y[0] < box_.low[0] - reach || y[1] < box_.low[1] - reach || y[0] > box_.high[0] + reach ||
+           y[1] > box_.high[1] + reach;
+  }
+
   /// The polygons around R swept by the disc, in the plane of the query.
   [[nodiscard]] Expected<std::shared_ptr<const detail::DiscBracket>> disc() const {
     std::shared_ptr<const detail::DiscBracket> kept = std::atomic_load(&s_.disc);
     if (kept && kept->radius == radius_) return kept;
     auto made = detail::DiscBracket::of(s_.p, s_.q, radius_, low_, high_);
     if (made) std::atomic_store(&s_.disc, *made);
+    if (!made && made.error().code == ErrorCode::out_of_range) {
+      return Error{ErrorCode::out_of_range, "the swept polygons reach beyond 1e300",
+                   margins_.p > margins_.q ? "p.margin" : "q.margin"};
+    }
     return made;
   }
 
@@ -285,6 +298,7 @@ class SweptDifference {
   }
 
   const PolygonDifference::State& s_;
+  PlanarMargins margins_;
   Dyadic radius_;
   double low_, high_;  ///< of the radius
   detail::Box2 box_;   ///< around R
@@ -308,6 +322,7 @@ std::optional<Error> check_margins(const PlanarMargins& margins) {
 Expected<PolygonDepth> PolygonDifference::swept_depth(const Point2& placement, const PlanarMargins& margins,
                                                       Leave leave) const {
   if (auto error = check_margins(margins)) return *std::move(error);
+  if (auto error = detail::refused_point(placement, "placement")) return *std::move(error);
   const SweptDifference swept(*state_, margins);
   const Point2 y = state_->turned(placement);
   PolygonDepth answer = swept.bounded(y);
@@ -316,6 +331,7 @@ Expected<PolygonDepth> PolygonDifference::swept_depth(const Point2& placement, c
     if (answer.contact == PlanarContact::overlapping) swept.search(y, answer);
     return answer;
   }
+  if (swept.one_convex() && swept.beside_box(y)) return answer;
   const auto disc = swept.disc();
   if (!disc) return disc.error();
   const auto way_out = [&](const PolygonDifference& r) {
@@ -328,13 +344,16 @@ Expected<PolygonDepth> PolygonDifference::swept_depth(const Point2& placement, c
 Expected<PolygonDepth> PolygonDifference::swept_depth_along(const Point2& placement, const Point2& direction,
                                                             const PlanarMargins& margins, Leave leave) const {
   if (auto error = check_margins(margins)) return *std::move(error);
+  if (auto error = detail::refused_point(placement, "placement")) return *std::move(error);
+  if (auto error = detail::refused_direction(direction, "direction")) return *std::move(error);
   const SweptDifference swept(*state_, margins);
   const Point2 y = state_->turned(placement);
   PolygonDepth answer = swept.bounded(y);
   answer.depth = answer.lower = answer.upper = 0;
   answer.translation = {0, 0};
-  const double size = detail::length(direction[0], direction[1]);
-  const Point2 unit = state_->turned({direction[0] / size, direction[1] / size});
+  const Point2 ahead = detail::raised(direction);
+  const double size = detail::length(ahead[0], ahead[1]);
+  const Point2 unit = state_->turned({ahead[0] / size, ahead[1] / size});
   if (leave == Leave::escape && !swept.convex()) {
     const auto disc = swept.disc();
     if (!disc) return disc.error();

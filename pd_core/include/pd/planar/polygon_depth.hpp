@@ -95,13 +95,15 @@ class PolygonDifference {
   /// For another `leave`, and one convex polygon, the answer lies between those of two regular polygons of 8,192
   /// corners in place of the disc. This bracket is certified and some 1e-6 of the margins wide. It is wider where a
   /// passage is as wide as Q within that. The first such question makes two differences, which are kept.
-  /// @return bad_value or non_finite for margins that are negative or not finite, out_of_range for a sum above 1e300;
-  /// unsupported for another `leave` than first_exit where neither P nor Q is convex.
+  /// @return bad_value or non_finite for margins that are negative or not finite, out_of_range for one above 1e300.
+  /// Another `leave` refuses margins that take the swept polygons beyond 1e300, too. non_finite or out_of_range
+  /// ("placement"). unsupported for another `leave` than first_exit where neither P nor Q is convex.
   [[nodiscard]] Expected<PolygonDepth> swept_depth(const Point2& placement, const PlanarMargins& margins,
                                                    Leave leave = Leave::first_exit) const;
   /// depth_along() in the same way. The bracket is certified, some 1e-10 of the depth wide, and wider where Q grazes P.
   /// Leave::escape is bracketed as above.
-  /// @return errors as above; Leave::straight is answered for all polygons.
+  /// @return errors as above, and zero_direction, non_finite or out_of_range ("direction"); Leave::straight is answered
+  /// for all polygons.
   [[nodiscard]] Expected<PolygonDepth> swept_depth_along(const Point2& placement, const Point2& direction,
                                                          const PlanarMargins& margins,
                                                          Leave leave = Leave::first_exit) const;
