@@ -284,8 +284,12 @@ py::tuple audit(const std::string& path, double tolerance, int threads, std::siz
   }
   const auto outcomes = audit::check(conditions, result.summary);
   if (result.end == audit::Audit::End::no_record) return py::make_tuple("", "", refusals);
-  return py::make_tuple(audit::audit_json(result, outcomes), audit::audit_table(result, outcomes, path, true),
-                        refusals);
+  try {
+    return py::make_tuple(audit::audit_json(result, outcomes), audit::audit_table(result, outcomes, path, true),
+                          refusals);
+  } catch (const query::Refusal& refusal) {  // an error past the range of doubles
+    refuse(refusal.code, refusal.message, "records");
+  }
 }
 
 }  // namespace

@@ -269,6 +269,28 @@ def test_an_answer_past_the_range_of_doubles_is_refused_or_right(a, b, pose):
     assert 0 < found.lower <= found.depth <= found.upper < np.inf and np.isfinite([*found.witness_a, *found.translation]).all()
 
 
+def test_a_manifold_past_the_range_of_doubles_is_refused_or_right():
+    z = 1e-200
+    a = pdepth.ConvexPolytope(z * np.array([[-2, 0, -1], [-3, 2, -2], [1, -2, 0], [0, -2, -1], [3, -3, -1], [1, 3, -3]]), margin=1e200)
+    b = pdepth.ConvexPolytope(z * np.array([[-1, 1, 0], [3, 1, 3], [0, -3, 2], [3, 2, 1], [3, -1, -1], [1, -2, -1]]), margin=1e200)
+    pose = pdepth.Pose(wxyz=[0.6, 0.8, 0, 0])
+    rows = pdepth.contact_manifold(a, b, [pose, None])
+    try:
+        found = pdepth.contact_manifold(a, b, pose)
+    except pdepth.Refused as error:
+        assert error.code == "out_of_range" and rows.error[0] == pdepth.ERRORS.index("out_of_range")
+        return
+    assert rows.error[0] == 0 and np.isfinite(found.position_a).all() and np.isfinite(found.position_b).all()
+
+
+def test_a_judgement_past_the_range_of_doubles_is_refused():
+    tiny = pdepth.Sphere(1e-300)
+    record = [HEAD, {"shape": "s", "is": tiny}, {"contact": 1, "a": "s", "b": "s", "reported": {"depth": 1e300, "normal": [1, 0, 0]}}]
+    with pytest.raises(pdepth.Refused) as caught:
+        pdepth.audit(record)
+    assert (caught.value.where, caught.value.code) == ("records", "out_of_range")
+
+
 def test_a_picture_of_a_size_that_no_camera_holds_is_refused():
     pytest.importorskip("pdepth._picture", reason="built without the renderer")
     for size in (1e-290, 1e200):

@@ -182,7 +182,8 @@ def depth(a, b, pose_a=None, pose_b=None, *, method="auto", delta=None, bracket=
     threads: cores that answer a batch, all by default. The interpreter's lock is released, and the bits are the same for
     any number.
 
-    Raises Refused, a ValueError, for bad input; a bad pose in a batch is a row's error.
+    Raises Refused, a ValueError, for bad input; a bad pose in a batch is a row's error. 'out_of_range': the answer is past
+    the range of doubles. 'in_use': another thread asks with the same Warm.
     """
     if threads is not None or axis != 0:
         _threads(threads)
