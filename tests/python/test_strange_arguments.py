@@ -166,6 +166,19 @@ def test_a_robots_file_is_refused_by_its_line(tmp_path, part, told):
     assert caught.value.where == "bad.urdf line 3" and told in str(caught.value)
 
 
+def test_a_robots_folder_may_have_any_name(tmp_path):
+    folder = os.path.join(os.fsencode(tmp_path), b"\xff")
+    os.mkdir(folder)
+    with open(os.path.join(folder, b"m.xyz"), "w") as file:
+        file.write("0 0 0\n1 0 0\n0 1 0\n0 0 1\n")
+    with open(os.path.join(folder, b"r.urdf"), "w") as file:
+        file.write('<robot name="r"><link name="a"><collision><geometry><mesh filename="m.xyz"/></geometry></collision></link></robot>')
+    path = os.fsdecode(os.path.join(folder, b"r.urdf"))
+    assert len(pdepth.Robot.from_urdf(path, meshes="hull").shape("a").vertices) == 4
+    with pytest.raises(pdepth.Refused, match="no faces"):
+        pdepth.Robot.from_urdf(path)
+
+
 def test_an_unknown_encoding_is_no_xml(tmp_path):
     file = tmp_path / "bad.urdf"
     file.write_text('<?xml version="1.0" encoding="foo"?>\n<robot name="r"/>')

@@ -8,7 +8,7 @@ import urllib.parse
 import numpy as np
 
 from . import _core
-from ._errors import length, refused
+from ._errors import file_name, length, refused
 from ._shapes import Compound, ConvexPolytope
 
 #: Ways to take a mesh.
@@ -108,6 +108,7 @@ def _roots(given):
 def _read(path, scale, wish, tolerance):
     from . import _protocol
 
+    path = file_name(path)
     if wish == "hull":
         return ConvexPolytope(_protocol.mesh_points(path, False)[0] * scale)
     connected = wish == "parts"
