@@ -254,6 +254,7 @@ void print_json(const CheckedMesh& checked) {
   writer.key("crossings_searched").boolean(report.crossings_searched);
   writer.key("points").integer(report.points).key("duplicate_points").integer(report.points - report.vertices);
   if (checked.mesh.left_out > 0) writer.key("points_left_out").integer(checked.mesh.left_out);
+  writer.key("loose_points").integer(report.loose_points);
   writer.key("faces").integer(report.faces).key("surfaces").integer(report.shells);
   writer.key("low").vector(report.low).key("high").vector(report.high);
   writer.key("faults").begin_object();
