@@ -109,19 +109,19 @@ TEST(ThinBody, DoesNotFallThroughAMesh) {
   }
 }
 
-/// A child that is through the sheet as a whole after one step is led back, too. One start in twenty still falls
+/// A child that is through the sheet as a whole after one step is led back, too. One start in thirty still falls
 /// edgewise between two of the cells.
 TEST(ThinBody, OfSeveralPartsDoesNotFallThroughAMesh) {
   int lost = 0;
   for (const Sheet sheet : {Sheet::two_triangles, Sheet::cells, Sheet::heightfield}) {
-    for (unsigned start = 0; start < 12; ++start) {
+    for (unsigned start = 0; start < 30; ++start) {
       OverASheet scene(sheet);
       const btRigidBody* const body = scene.plate_of_boxes(any_turn(start), 0.05);
       scene.step(120, 30);
       lost += height_of(*body) < -0.2 ? 1 : 0;
     }
   }
-  EXPECT_LE(lost, 1) << "of 36";
+  EXPECT_LE(lost, 5) << "of 90";
 }
 
 /// A small ball leaps over the reach of contacts, and over itself, in one step.

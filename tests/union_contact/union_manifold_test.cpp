@@ -93,6 +93,32 @@ TEST_F(UnionManifolds, ABoxThatSlidesOverInnerEdgesMeetsNone) {
   }
 }
 
+TEST_F(UnionManifolds, PiecesThatCoverEachOtherLeaveASheetAsOne) {
+  Mesh square;
+  square.points = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  square.add({0, 1, 2});
+  square.add({0, 2, 3});
+  const PieceBody floor = *PieceBody::of_sheet(square.view());
+  const ConvexPolytope half = *ConvexPolytope::box({0.3, 0.3, 0.2});
+  const PieceBody stacked =
+      PieceBody::of_compound(*Compound::from_parts({{half, at(0, 0, -0.2)}, {half, at(0, 0, 0.2)}}));
+  // The sheet cuts the lower box near its top, at the seam, and the upper one near its bottom.
+  for (const double z : {0.05, 0.0, -0.05}) {
+    SCOPED_TRACE(z);
+    const UnionManifold found = ask({&stacked, at(0.01, 0.02, z)}, {&floor, Pose()});
+    ASSERT_FALSE(found.patches.empty());
+    const Vec3 side = z < 0 ? -Vec3::UnitZ() : Vec3(Vec3::UnitZ());
+    double deepest = 0;
+    for (const UnionContactPatch& patch : found.patches) {
+      EXPECT_LT((patch.normal - side).norm(), 1e-12);
+      for (int k = 0; k < patch.count; ++k) {
+        deepest = std::max(deepest, patch.points[static_cast<std::size_t>(k)].contact.depth);
+      }
+    }
+    EXPECT_NEAR(deepest, 0.4 - std::abs(z), 1e-12);
+  }
+}
+
 TEST_F(UnionManifolds, CoveredContactsAreCounted) {
   const PieceBody floor = *PieceBody::of_sheet(floor_of_cells().view()), body = box(0.2);
   // The box's side stands 1e-5 beyond an edge of the mesh: of that triangle alone it would leave sideways.

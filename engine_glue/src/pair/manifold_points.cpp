@@ -100,6 +100,45 @@ void forget_parted(btPersistentManifold& manifold) {
   }
 }
 
+/// Makes room for a new point in a full manifold. Bullet replaces the point that costs the least area, whatever its
+/// normal, so that triangles of one slope of a groove push out the points of the other. Here a point of the most common
+/// direction goes: the one nearest to another of that direction, but not the deepest of all.
+/// @return false: the new point is the one to leave out
+bool make_room(btPersistentManifold& manifold, const FreshPoint& fresh) {
+  constexpr btScalar kOfOneWay = btScalar(0.9);  // cos 25 degrees
+  struct Place {
+    btVector3 normal, position;
+    btScalar distance;
+  };
+  std::array<Place, MANIFOLD_CACHE_SIZE + 1> all;
+  for (int i = 0; i < MANIFOLD_CACHE_SIZE; ++i) {
+    const btManifoldPoint& point = manifold.getContactPoint(i);
+    all[i] = {point.m_normalWorldOnB, point.m_positionWorldOnB, point.getDistance()};
+  }
+  all[MANIFOLD_CACHE_SIZE] = {fresh.normal, fresh.point_on_b, fresh.distance};
+  const auto deepest =
+      std::min_element(all.begin(), all.end(), [](const Place& x, const Place& y) { return x.distance < y.distance; });
+  int least = MANIFOLD_CACHE_SIZE, most_alike = -1;
+  btScalar nearest = 0;
+  for (int i = 0; i <= MANIFOLD_CACHE_SIZE; ++i) {
+    if (&all[i] == &*deepest) continue;
+    int alike = 0;
+    btScalar gap = BT_LARGE_FLOAT;
+    for (int k = 0; k <= MANIFOLD_CACHE_SIZE; ++k) {
+      if (k == i || all[i].normal.dot(all[k].normal) < kOfOneWay) continue;
+      ++alike;
+      gap = std::min(gap, (all[i].position - all[k].position).length2());
+    }
+    if (alike < most_alike || (alike == most_alike && gap > nearest)) continue;
+    least = i;
+    most_alike = alike;
+    nearest = gap;
+  }
+  if (least == MANIFOLD_CACHE_SIZE) return false;
+  manifold.removeContactPoint(least);
+  return true;
+}
+
 /// The points on A, in its frame.
 std::array<btVector3, 4> local_on_a(const btTransform& pose_a, const FreshPoints& fresh) {
   std::array<btVector3, 4> local;
@@ -142,6 +181,7 @@ void add_points(btPersistentManifold& manifold, const FreshPoints& found, const 
   for (int i = 0; i < fresh.count; ++i) {
     const FreshPoint& point = fresh.points[order[i]];
     const int entry = entry_near(manifold, local_a[order[i]]);
+    if (entry < 0 && manifold.getNumContacts() == MANIFOLD_CACHE_SIZE && !make_room(manifold, point)) continue;
     const FrictionAnchor anchor = entry >= 0 ? anchor_of(manifold.getContactPoint(entry)) : FrictionAnchor();
     const int added = add_anchored_point(result, manifold, point, entry, anchor);
     ImpulseTrend none;

@@ -1,5 +1,8 @@
 #include "pair/points_of_pieces.hpp"
 
+#include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
+#include <BulletCollision/CollisionShapes/btCollisionShape.h>
+
 #include "pieces/asked_pieces.hpp"
 
 namespace pd::detail {
@@ -14,6 +17,10 @@ ContactManifold closest_point_of(const PenetrationDepth& depth) {
   closest.points[0].depth = -depth.signed_distance();
   closest.count = 1;
   return closest;
+}
+
+bool is_triangle(const btCollisionObjectWrapper& piece) {
+  return piece.getCollisionShape()->getShapeType() == TRIANGLE_SHAPE_PROXYTYPE;
 }
 
 }  // namespace
@@ -36,7 +43,12 @@ void keep_points_of_pieces(const AskedPair& asked, const PairAnswer& answer, Thr
                       .near = buffers.near,
                       .cover = buffers.cover,
                       .manifold = buffers.manifold});
+  const ContactManifold alone = points;
   count_covered(keep_uncovered(pieces.as(answer.a, answer.b), answer.depth, AnswerPoints::made, points), buffers);
+  // A part deep in a triangle: nobody sees the other parts' contacts here, so that it would fall through without its
+  // own.
+  const bool triangle = is_triangle(asked.a) || is_triangle(asked.b);
+  if (points.count == 0 && triangle && -answer.depth.signed_distance() > asked.contact_reach) points = alone;
 }
 
 }  // namespace pd::detail

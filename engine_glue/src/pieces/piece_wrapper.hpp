@@ -24,4 +24,11 @@ inline constexpr double kPoseRounding = sizeof(btScalar) == sizeof(float) ? 0x1p
 /// True if the shape behind the wrapper is a child of a compound.
 [[nodiscard]] bool is_part(const btCollisionObjectWrapper& wrapper);
 
+/// Returns the body that a piece belongs to, or the body itself.
+[[nodiscard]] inline const btCollisionObjectWrapper& whole_of(const btCollisionObjectWrapper& wrapper) {
+  const btCollisionObjectWrapper* whole = &wrapper;
+  while (whole->m_parent != nullptr) whole = whole->m_parent;
+  return *whole;
+}
+
 }  // namespace pd::detail

@@ -27,8 +27,7 @@ class ChildOnGround final : public StandingBody {
     std::span<const MetTriangle> triangles;
     SheetSides* sides;  ///< null: the mesh has fronts of its own
   };
-  ChildOnGround(const Asked& asked, SolverCore& core, ThreadBuffers& buffers, std::shared_ptr<CachedShape>& known)
-      : asked_(asked), core_(core), buffers_(buffers), known_(known) {}
+  ChildOnGround(const Asked& asked, std::shared_ptr<CachedShape>& known) : asked_(asked), known_(known) {}
 
   bool stand_on(const Halfspace3& ground, HalfspaceContact& contact) override {
     const GroundQuestion asked{.body = static_cast<const btConvexShape&>(*asked_.wrapper.getCollisionShape()),
@@ -38,7 +37,7 @@ class ChildOnGround final : public StandingBody {
                                .shape = known_,
                                .threshold = static_cast<double>(asked_.question.threshold),
                                .sharp_box = is_part(asked_.wrapper)};
-    return core_.stand_on(asked, buffers_, contact) == SolverCore::Outcome::answered;
+    return asked_.question.core.stand_on(asked, asked_.question.buffers, contact) == SolverCore::Outcome::answered;
   }
   [[nodiscard]] PosedShape posed() const override {
     const bool sharp = is_part(asked_.wrapper) && known_->sharp;
@@ -47,8 +46,8 @@ class ChildOnGround final : public StandingBody {
   void drop_covered(ContactManifold& points) override {
     if (!is_piece(asked_.wrapper)) return;
     const PosedShape body = posed();
-    AskedPieces pieces = asked_.question.of_pieces(asked_.wrapper, asked_.question.b, core_, buffers_);
-    count_covered(pd::drop_covered(pieces.as(body, body), points), buffers_);
+    AskedPieces pieces = asked_.question.of_pieces(asked_.wrapper, asked_.question.b);
+    count_covered(pd::drop_covered(pieces.as(body, body), points), asked_.question.buffers);
   }
   [[nodiscard]] bool remembers_sides() const override { return asked_.sides != nullptr; }
   [[nodiscard]] Vec3 side_of(std::size_t triangle, const Vec3& normal) const override {
@@ -62,8 +61,6 @@ class ChildOnGround final : public StandingBody {
 
  private:
   Asked asked_;
-  SolverCore& core_;
-  ThreadBuffers& buffers_;
   std::shared_ptr<CachedShape>& known_;
 };
 

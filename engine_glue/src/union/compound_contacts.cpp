@@ -43,7 +43,7 @@ int place_of(int number, const std::vector<Child>& all, std::vector<Child>& chil
 /// Finds the children of two compounds that are near each other, by Bullet's trees.
 class NearChildren final : public NearSides {
  public:
-  NearChildren(const UnionQuestion& question, SolverCore& core) : question_(question), core_(core) {}
+  explicit NearChildren(const UnionQuestion& question) : question_(question) {}
   bool collect(double reach, NearSide& a, NearSide& b) override {
     return collect(question_.a, question_.b, reach, a_, a) && collect(question_.b, question_.a, reach, b_, b);
   }
@@ -63,7 +63,7 @@ class NearChildren final : public NearSides {
     side = {};
     for (const Child& child : held.children) {
       if (!child.shape->isConvex()) return false;
-      const auto found = core_.cache.find(static_cast<const btConvexShape&>(*child.shape), question_.stamp);
+      const auto found = question_.core.cache.find(static_cast<const btConvexShape&>(*child.shape), question_.stamp);
       if (!found->body) return false;
       const bool part = child.index >= 0;
       held.shapes.push_back(found);
@@ -74,7 +74,6 @@ class NearChildren final : public NearSides {
   }
 
   const UnionQuestion& question_;
-  SolverCore& core_;
   Held a_, b_;
 };
 
@@ -100,10 +99,15 @@ bool all_convex(const std::vector<Child>& children) {
   return std::all_of(children.begin(), children.end(), [](const Child& child) { return child.shape->isConvex(); });
 }
 
+/// Which points of two children a step can need, and up to which gap.
+struct ChildReach {
+  const StepReach& of_step;
+  double gap;
+};
+
 class CompoundContacts final : public UnionContacts {
  public:
-  bool find(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory,
-            Patches& patches) override;
+  bool find(const UnionQuestion& question, Patches& patches) override;
   [[nodiscard]] PointPieces pieces_of(int pair) const override {
     const auto [i, j] = pairs_[static_cast<std::size_t>(pair)];
     return {children_a_[static_cast<std::size_t>(i)], &children_b_[static_cast<std::size_t>(j)]};
@@ -111,15 +115,12 @@ class CompoundContacts final : public UnionContacts {
 
  private:
   /// Brings the shapes of the near children of the question's a (side 0) or b (1) up to date.
-  void find_shapes(std::size_t side, const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers,
-                   PairMemory& memory) const;
+  void find_shapes(std::size_t side, const UnionQuestion& question) const;
   /// One pair's points. @return false where a child has no exact form
-  /// @param gap  up to which their points can be needed; `reach`: which of them are
-  bool ask(const ChildrenInResult& pair, const UnionQuestion& question, SolverCore& core, double gap,
-           const StepReach& reach, PieceMemory& memory, ThreadBuffers& buffers, Patches& patches);
+  bool ask(const ChildrenInResult& pair, const UnionQuestion& question, const ChildReach& reach, PieceMemory& memory,
+           Patches& patches);
   /// Where children are deep in each other, the whole's shortest way out in place of what they said against it.
-  void leave_as_one(const UnionQuestion& question, SolverCore& core, PairMemory& memory, ThreadBuffers& buffers,
-                    Patches& patches);
+  void leave_as_one(const UnionQuestion& question, Patches& patches);
 
   std::vector<Child> children_a_;
   std::vector<Child> children_b_;
@@ -128,22 +129,21 @@ class CompoundContacts final : public UnionContacts {
   DeepUnion deep_;
 };
 
-void CompoundContacts::find_shapes(std::size_t side, const UnionQuestion& question, SolverCore& core,
-                                   ThreadBuffers& buffers, PairMemory& memory) const {
+void CompoundContacts::find_shapes(std::size_t side, const UnionQuestion& question) const {
   const btCollisionShape& body = *(side == 0 ? question.a : question.b).getCollisionShape();
   for (const Child& child : side == 0 ? children_a_ : children_b_) {
-    std::shared_ptr<CachedShape>& shape = memory.shape_of_child(side, child.index);
+    std::shared_ptr<CachedShape>& shape = question.memory.shape_of_child(side, child.index);
     if (child.index < 0) {
-      core.find(static_cast<const btConvexShape&>(*child.shape), question.stamp, shape, buffers);
+      question.core.find(static_cast<const btConvexShape&>(*child.shape), question.stamp, shape, question.buffers);
     } else {
-      shape = buffers.near.facts().look_at({static_cast<const btCompoundShape&>(body), child.index}, core.cache);
+      shape = question.buffers.near.facts().look_at({static_cast<const btCompoundShape&>(body), child.index},
+                                                    question.core.cache);
     }
   }
 }
 
-bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory,
-                            Patches& patches) {
-  const auto& [a, b, seconds, threshold, stamp, result] = question;
+bool CompoundContacts::find(const UnionQuestion& question, Patches& patches) {
+  const auto& [a, b, seconds, threshold, stamp, result, core, buffers, memory] = question;
   pairs_.clear();
   memories_.begin();
   deep_.clear();
@@ -168,8 +168,8 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Thr
   }
   if (!all_convex(children_a_) || !all_convex(children_b_)) return false;
   buffers.near.begin_pair(stamp);
-  find_shapes(0, question, core, buffers, memory);
-  find_shapes(1, question, core, buffers, memory);
+  find_shapes(0, question);
+  find_shapes(1, question);
   const StepReach step_reach(result, threshold, static_cast<btScalar>(seconds));
   for (std::size_t i = 0; i < children_a_.size(); ++i) {
     const Child& child_a = children_a_[i];
@@ -194,15 +194,13 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Thr
       if (still_apart(remembered, child_a, child_b, static_cast<double>(gap))) continue;
       pairs_.emplace_back(static_cast<int>(i), static_cast<int>(j));
       const ChildrenInResult pair(result, a, child_a, b, child_b);
-      if (!ask(pair, question, core, static_cast<double>(gap), step_reach, remembered, buffers, patches)) {
-        return false;
-      }
+      if (!ask(pair, question, {step_reach, static_cast<double>(gap)}, remembered, patches)) return false;
     }
   }
   memories_.end(memory.pieces);
   const double speed = (linear_velocity(*b.getCollisionObject()) - linear_velocity(*a.getCollisionObject())).norm();
   if (deep_.needed_in_step(static_cast<double>(question.time.seconds) * speed, pairs_.size())) {
-    leave_as_one(question, core, memory, buffers, patches);
+    leave_as_one(question, patches);
   } else {
     memory.union_pause = memory.union_refusals = 0;
     memory.union_way.setZero();
@@ -210,14 +208,15 @@ bool CompoundContacts::find(const UnionQuestion& question, SolverCore& core, Thr
   return true;
 }
 
-void CompoundContacts::leave_as_one(const UnionQuestion& question, SolverCore& core, PairMemory& memory,
-                                    ThreadBuffers& buffers, Patches& patches) {
+void CompoundContacts::leave_as_one(const UnionQuestion& question, Patches& patches) {
+  PairMemory& memory = question.memory;
+  ThreadBuffers& buffers = question.buffers;
   if (memory.union_pause > 0) {
     --memory.union_pause;
     buffers.counters.deep_unions_left.add();
     return;
   }
-  NearChildren near(question, core);
+  NearChildren near(question);
   const Vec3 back =
       linear_velocity(*question.b.getCollisionObject()) - linear_velocity(*question.a.getCollisionObject());
   DeepUnion::Way way;
@@ -243,8 +242,9 @@ void CompoundContacts::leave_as_one(const UnionQuestion& question, SolverCore& c
   patches.add(way.points, static_cast<int>(pair - pairs_.begin()), way.piece_a, way.piece_b);
 }
 
-bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& question, SolverCore& core, double gap,
-                           const StepReach& reach, PieceMemory& memory, ThreadBuffers& buffers, Patches& patches) {
+bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& question, const ChildReach& reach,
+                           PieceMemory& memory, Patches& patches) {
+  ThreadBuffers& buffers = question.buffers;
   PairAnswer answer;
   const auto& shape_a = static_cast<const btConvexShape&>(*pair.a().getCollisionShape());
   const auto& shape_b = static_cast<const btConvexShape&>(*pair.b().getCollisionShape());
@@ -258,23 +258,23 @@ bool CompoundContacts::ask(const ChildrenInResult& pair, const UnionQuestion& qu
                            .warm = &memory.warm,
                            .stamp = question.stamp,
                            .corners = {true, is_part(pair.a()), is_part(pair.b())},
-                           .beyond = memory.met ? kAnyDistance : gap,
+                           .beyond = memory.met ? kAnyDistance : reach.gap,
                            .shapes_current = true};
-  const auto outcome = core.contacts(asked, memory.met ? threshold : gap, buffers, answer, points);
+  const auto outcome = question.core.contacts(asked, memory.met ? threshold : reach.gap, buffers, answer, points);
   if (outcome == SolverCore::Outcome::unsupported) return false;
   if (outcome != SolverCore::Outcome::answered) return true;
-  memory.met = answer.depth.signed_distance() <= gap;
+  memory.met = answer.depth.signed_distance() <= reach.gap;
   memory.parted.forget();
   if (!memory.met) memory.parted.note(answer.a.pose, answer.b.pose, answer.depth);
-  reach.leave_out_idle(points);
-  if (reach.against_fixed()) {
+  reach.of_step.leave_out_idle(points);
+  if (reach.of_step.against_fixed()) {
     FreshPoints fresh;
     set_fresh_points(points, fresh);
-    if (on_one_line(fresh, kEdge * question.threshold) && pass_each_other(answer.a, answer.b, fresh, reach)) {
+    if (on_one_line(fresh, kEdge * question.threshold) && pass_each_other(answer.a, answer.b, fresh, reach.of_step)) {
       points.count = 0;
     }
   }
-  AskedPieces pieces = question.of_pieces(pair.a(), pair.b(), core, buffers);
+  AskedPieces pieces = question.of_pieces(pair.a(), pair.b());
   count_covered(keep_uncovered(pieces.as(answer.a, answer.b), answer.depth, AnswerPoints::made, points), buffers);
   const auto [i, j] = pairs_.back();
   const int piece_a = children_a_[static_cast<std::size_t>(i)].index;

@@ -16,6 +16,7 @@
 #include "pd/union_contact/gentle_ground.hpp"
 #include "pd/union_contact/one_sided.hpp"
 #include "pd/union_contact/piece_memories.hpp"
+#include "pd/union_contact/straddled.hpp"
 #include "pieces/compound_facts.hpp"
 #include "shapes/compound_children.hpp"
 #include "shapes/met_triangle.hpp"
@@ -53,10 +54,15 @@ int part_of(const Child& child, const MetTriangle& triangle) { return triangle.p
 /// Bullet's scalar.
 constexpr double kFlat = sizeof(btScalar) == sizeof(float) ? 0x1p-22 : 0x1p-50;
 
+/// A child that is asked about, and where.
+struct ChildAsked {
+  const btCollisionObjectWrapper& wrapper;
+  const btTransform& pose;
+};
+
 class MeshContacts final : public UnionContacts {
  public:
-  bool find(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory,
-            Patches& patches) override;
+  bool find(const UnionQuestion& question, Patches& patches) override;
   [[nodiscard]] PointPieces pieces_of(int triangle) const override {
     const MetTriangle& met = triangles_[static_cast<std::size_t>(triangle)];
     return {children_[static_cast<std::size_t>(met.child)], nullptr, &met};
@@ -66,7 +72,7 @@ class MeshContacts final : public UnionContacts {
  private:
   /// Compares where the children are with where all triangles were asked about them.
   /// @return whether only those that made points are to be asked again
-  bool stand_still(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory);
+  bool stand_still(const UnionQuestion& question);
   /// False: in the next step the body will not be where it is.
   static bool may_come_to_rest(const UnionQuestion& question);
   /// The triangles that one of the children is asked about.
@@ -79,28 +85,26 @@ class MeshContacts final : public UnionContacts {
   /// far as they come.
   void reach_back(const UnionQuestion& question);
   /// Reads the mesh around one of them, or all.
-  void read_mesh(const UnionQuestion& question, const btVector3& lower, const btVector3& upper, ThreadBuffers& buffers);
+  void read_mesh(const UnionQuestion& question, const btVector3& lower, const btVector3& upper);
   /// The contacts of one of them. @return false where a piece has no exact form
-  bool find_of(const UnionQuestion& question, int place, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory,
-               Patches& patches);
+  bool find_of(const UnionQuestion& question, int place, Patches& patches);
   /// Finds the contacts with the triangles from number `first` on, if these are flat. @return false if each triangle
   /// has to be asked
   bool find_on_flat(ChildOnGround& standing, const btCollisionObjectWrapper& a, const UnionQuestion& question,
                     std::size_t first, Patches& patches);
   /// Whether the body can be asked along the normals of gentle triangles. @param a  the wrapper of the child
-  bool begin_gentle(const btCollisionObjectWrapper& a, const UnionQuestion& question, int place, SolverCore& core,
-                    PairMemory& memory);
+  bool begin_gentle(const btCollisionObjectWrapper& a, const UnionQuestion& question, int place);
   /// The contacts with one of the triangles that were chosen, if it is gentle. @return false: it is not
   bool find_on_gentle(const btCollisionObjectWrapper& a, const UnionQuestion& question, std::size_t triangle,
-                      SolverCore& core, ThreadBuffers& buffers, Patches& patches);
+                      Patches& patches);
   /// True if a child's origin is on the side of a triangle that the child came from.
-  [[nodiscard]] bool is_on_its_side(const UnionQuestion& question, std::size_t triangle, ThreadBuffers& buffers) const;
+  [[nodiscard]] bool is_on_its_side(const UnionQuestion& question, std::size_t triangle) const;
   /// Asks a triangle by itself.
-  SolverCore::Outcome ask(const btCollisionObjectWrapper& a, const btTransform& pose_a, const UnionQuestion& question,
-                          const TriangleInResult& triangle, PieceMemory* memory, SolverCore& core,
-                          ThreadBuffers& buffers, PairAnswer& answer) const;
-  void add_fronts(const btCollisionObjectWrapper& a, const UnionQuestion& question, SolverCore& core,
-                  ThreadBuffers& buffers, Patches& patches);
+  SolverCore::Outcome ask(const ChildAsked& child, const UnionQuestion& question, const TriangleInResult& triangle,
+                          PieceMemory* memory, PairAnswer& answer) const;
+  void add_fronts(const btCollisionObjectWrapper& a, const UnionQuestion& question, Patches& patches);
+  /// The way out of the whole body, where no contact of a child is left that overlaps.
+  void leave_straddled(const UnionQuestion& question, Patches& patches);
 
   std::vector<Child> children_;               ///< of question.a, or itself
   std::vector<BodyReach> reaches_;            ///< of the children
@@ -119,6 +123,7 @@ class MeshContacts final : public UnionContacts {
   PosedShape body_{};  ///< the child at hand
   PieceMemories<PieceMemory> memories_;
   OneSided one_sided_;
+  StraddledTriangles straddled_;
   SheetSides sides_;
 };
 
@@ -156,8 +161,8 @@ void MeshContacts::reach_back(const UnionQuestion& question) {
   }
 }
 
-void MeshContacts::read_mesh(const UnionQuestion& question, const btVector3& lower, const btVector3& upper,
-                             ThreadBuffers& buffers) {
+void MeshContacts::read_mesh(const UnionQuestion& question, const btVector3& lower, const btVector3& upper) {
+  ThreadBuffers& buffers = question.buffers;
   const auto& mesh = static_cast<const btConcaveShape&>(*question.b.getCollisionShape());
   const int skipped = buffers.around.read(mesh, lower, upper);
   if (skipped > 0) buffers.counters.skipped_triangles.add(skipped);
@@ -165,26 +170,23 @@ void MeshContacts::read_mesh(const UnionQuestion& question, const btVector3& low
   gentle_.know(buffers.around.corners());
 }
 
-SolverCore::Outcome MeshContacts::ask(const btCollisionObjectWrapper& a, const btTransform& pose_a,
-                                      const UnionQuestion& question, const TriangleInResult& triangle,
-                                      PieceMemory* memory, SolverCore& core, ThreadBuffers& buffers,
-                                      PairAnswer& answer) const {
+SolverCore::Outcome MeshContacts::ask(const ChildAsked& child, const UnionQuestion& question,
+                                      const TriangleInResult& triangle, PieceMemory* memory, PairAnswer& answer) const {
   const bool met = (memory != nullptr && memory->met) || sides_.fast();
-  const PairQuestion asked{.a = static_cast<const btConvexShape&>(*a.getCollisionShape()),
-                           .pose_a = pose_a,
+  const PairQuestion asked{.a = static_cast<const btConvexShape&>(*child.wrapper.getCollisionShape()),
+                           .pose_a = child.pose,
                            .b = triangle.shape(),
                            .pose_b = question.b.getWorldTransform(),
-                           .shapes = memory != nullptr ? memory->shapes : buffers.recent,
+                           .shapes = memory != nullptr ? memory->shapes : question.buffers.recent,
                            .warm = memory != nullptr ? &memory->warm : nullptr,
                            .stamp = question.stamp,
-                           .corners = {true, is_part(a), false},
+                           .corners = {true, is_part(child.wrapper), false},
                            .beyond = met ? kAnyDistance : static_cast<double>(question.threshold)};
-  return core.answer(asked, buffers, answer);
+  return question.core.answer(asked, question.buffers, answer);
 }
 
 /// The contacts along the fronts of triangles that the body stands through, where none of the others leads off them.
-void MeshContacts::add_fronts(const btCollisionObjectWrapper& a, const UnionQuestion& question, SolverCore& core,
-                              ThreadBuffers& buffers, Patches& patches) {
+void MeshContacts::add_fronts(const btCollisionObjectWrapper& a, const UnionQuestion& question, Patches& patches) {
   const btTransform& pose = a.getWorldTransform();
   for (const OneSided::Behind& behind : one_sided_.behind()) {
     const MetTriangle& met = triangles_[static_cast<std::size_t>(behind.triangle)];
@@ -194,22 +196,43 @@ void MeshContacts::add_fronts(const btCollisionObjectWrapper& a, const UnionQues
     const bool left = std::any_of(ways.begin(), ways.end(), [&](const Vec3& way) {
       // A little farther than touching, which rounding would decide.
       const btTransform moved(pose.getBasis(), pose.getOrigin() + to_bullet(Vec3(kClear * way)));
-      return ask(a, moved, question, triangle, nullptr, core, buffers, answer) == SolverCore::Outcome::answered &&
+      return ask({a, moved}, question, triangle, nullptr, answer) == SolverCore::Outcome::answered &&
              answer.depth.contact != ContactClass::overlapping;
     });
-    if (left || ask(a, pose, question, triangle, nullptr, core, buffers, answer) != SolverCore::Outcome::answered) {
+    if (left || ask({a, pose}, question, triangle, nullptr, answer) != SolverCore::Outcome::answered) {
       continue;
     }
     const ContactManifold points =
-        along_front(question.of_pieces(a, triangle.wrapper(), core, buffers).as(answer.a, answer.b, behind.front));
+        along_front(question.of_pieces(a, triangle.wrapper()).as(answer.a, answer.b, behind.front));
     patches.add(points, behind.triangle, part_of(children_[static_cast<std::size_t>(met.child)], met), met.index);
   }
 }
 
-bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory,
-                        Patches& patches) {
+void MeshContacts::leave_straddled(const UnionQuestion& question, Patches& patches) {
+  const btTransform& pose = question.b.getWorldTransform();
+  const Vec3 middle = to_pd(pose.invXform(whole_of(question.a).getWorldTransform().getOrigin()));
+  for (const auto& [place, triangle] : straddled_.need_way_out(patches)) {
+    const MetTriangle& met = triangles_[static_cast<std::size_t>(triangle)];
+    const Child& child = children_[static_cast<std::size_t>(place)];
+    const Vec3 corner = to_pd(met.corners[0]);
+    const Vec3 normal = (to_pd(met.corners[1]) - corner).cross(to_pd(met.corners[2]) - corner).normalized();
+    const bool one_sided = question.core.settings.one_sided_meshes;
+    const Vec3 front = one_sided ? normal : side_towards(middle, normal, corner);
+    if (!one_sided) sides_.keep(number_of_pieces(child.index, met), front, corner);
+    const ChildInResult piece(question.result, question.a, child);
+    one_sided_.clear();
+    one_sided_.add_behind(triangle, to_pd(pose).rotation() * front);
+    add_fronts(piece.wrapper(), question, patches);
+  }
+}
+
+bool MeshContacts::find(const UnionQuestion& question, Patches& patches) {
+  SolverCore& core = question.core;
+  ThreadBuffers& buffers = question.buffers;
+  PairMemory& memory = question.memory;
   triangles_.clear();
   places_.clear();
+  straddled_.clear();
   memories_.begin();
   if (!is_finite(question.a.getWorldTransform()) || !is_finite(question.b.getWorldTransform())) return true;
   if (!all_children(question.a, *question.b.getCollisionShape(), children_)) return false;
@@ -219,8 +242,8 @@ bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, ThreadB
   reach_out(question);
   if (!core.settings.one_sided_meshes) reach_back(question);
   sides_.begin(memory.sheet);
-  still_ = stand_still(question, core, buffers, memory);
-  if (together_) read_mesh(question, lower_, upper_, buffers);
+  still_ = stand_still(question);
+  if (together_) read_mesh(question, lower_, upper_);
   if (still_) {
     memory.standing.find(buffers.around.triangles(), known_);
   } else if (!stand_.empty() && may_come_to_rest(question)) {
@@ -230,10 +253,11 @@ bool MeshContacts::find(const UnionQuestion& question, SolverCore& core, ThreadB
     memory.standing.forget();
   }
   for (std::size_t i = 0; i < children_.size(); ++i) {
-    if (find_of(question, static_cast<int>(i), core, buffers, memory, patches)) continue;
+    if (find_of(question, static_cast<int>(i), patches)) continue;
     memory.standing.forget();
     return false;
   }
+  leave_straddled(question, patches);
   if (!still_) {
     memories_.end(memory.pieces);
     sides_.end(memory.sheet);
@@ -248,8 +272,9 @@ void MeshContacts::enter_sides(const UnionQuestion& question, const Child& child
                static_cast<double>(question.threshold));
 }
 
-bool MeshContacts::stand_still(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers,
-                               PairMemory& memory) {
+bool MeshContacts::stand_still(const UnionQuestion& question) {
+  SolverCore& core = question.core;
+  PairMemory& memory = question.memory;
   stand_.clear();
   radii_.clear();
   // Children far apart read the mesh one by one; what stands behind a one-sided triangle is asked with all others.
@@ -258,7 +283,7 @@ bool MeshContacts::stand_still(const UnionQuestion& question, SolverCore& core, 
   for (std::size_t i = 0; i < children_.size(); ++i) {
     const Child& child = children_[i];
     std::shared_ptr<CachedShape>& shape = memory.shape_of_child(0, child.index);
-    core.find(static_cast<const btConvexShape&>(*child.shape), question.stamp, shape, buffers);
+    core.find(static_cast<const btConvexShape&>(*child.shape), question.stamp, shape, question.buffers);
     stand_.push_back({child.index, into_mesh * child.pose, shape});
     const Vec3 origin = to_pd(stand_.back().pose.getOrigin());
     radii_.push_back((to_pd(reaches_[i].upper()) - origin).cwiseMax(origin - to_pd(reaches_[i].lower())).norm());
@@ -299,12 +324,13 @@ void MeshContacts::remember_chosen(const Patches& patches, PairMemory& memory) {
   }
 }
 
-bool MeshContacts::begin_gentle(const btCollisionObjectWrapper& a, const UnionQuestion& question, int place,
-                                SolverCore& core, PairMemory& memory) {
+bool MeshContacts::begin_gentle(const btCollisionObjectWrapper& a, const UnionQuestion& question, int place) {
   const btTransform& pose = a.getWorldTransform();
   if (!in_range(pose) || !in_range(question.b.getWorldTransform())) return false;
-  std::shared_ptr<CachedShape>& shape = memory.shape_of_child(0, children_[static_cast<std::size_t>(place)].index);
-  StepShapes{core.cache, question.stamp}.refresh(static_cast<const btConvexShape&>(*a.getCollisionShape()), shape);
+  const int child = children_[static_cast<std::size_t>(place)].index;
+  std::shared_ptr<CachedShape>& shape = question.memory.shape_of_child(0, child);
+  StepShapes{question.core.cache, question.stamp}.refresh(static_cast<const btConvexShape&>(*a.getCollisionShape()),
+                                                          shape);
   if (!shape->body) return false;
   body_ = {(is_part(a) && shape->sharp ? shape->sharp : shape->body).get(), to_pd(pose)};
   const BodyReach& reach = reaches_[static_cast<std::size_t>(place)];
@@ -313,14 +339,14 @@ bool MeshContacts::begin_gentle(const btCollisionObjectWrapper& a, const UnionQu
                         .margin = static_cast<double>(question.b.getCollisionShape()->getMargin()),
                         .lower = to_pd(reach.lower()),
                         .upper = to_pd(reach.upper()),
-                        .one_sided = core.settings.one_sided_meshes},
+                        .one_sided = question.core.settings.one_sided_meshes},
                        static_cast<double>(question.threshold));
 }
 
-bool MeshContacts::is_on_its_side(const UnionQuestion& question, std::size_t triangle, ThreadBuffers& buffers) const {
+bool MeshContacts::is_on_its_side(const UnionQuestion& question, std::size_t triangle) const {
   const MetTriangle& met = triangles_[triangle];
   const Child& child = children_[static_cast<std::size_t>(met.child)];
-  const Vec3 normal = buffers.around.triangles()[places_[triangle]].across.normalized();
+  const Vec3 normal = question.buffers.around.triangles()[places_[triangle]].across.normalized();
   const Vec3 corner = to_pd(met.corners[0]);
   const Vec3 origin = to_pd(question.b.getWorldTransform().invXform(child.pose.getOrigin()));
   const Vec3 front = sides_.front_of(number_of_pieces(child.index, met), normal);
@@ -329,15 +355,17 @@ bool MeshContacts::is_on_its_side(const UnionQuestion& question, std::size_t tri
 }
 
 bool MeshContacts::find_on_gentle(const btCollisionObjectWrapper& a, const UnionQuestion& question,
-                                  std::size_t triangle, SolverCore& core, ThreadBuffers& buffers, Patches& patches) {
+                                  std::size_t triangle, Patches& patches) {
+  ThreadBuffers& buffers = question.buffers;
+  const bool one_sided = question.core.settings.one_sided_meshes;
   const std::size_t place = places_[triangle];
-  if (!core.settings.one_sided_meshes && !is_on_its_side(question, triangle, buffers)) return false;
+  if (!one_sided && !is_on_its_side(question, triangle)) return false;
   if (!gentle_.ask(place)) return false;
   buffers.counters.calls.add();
   buffers.counters.support_calls.add();
   const MetTriangle& met = triangles_[triangle];
   const Child& child = children_[static_cast<std::size_t>(met.child)];
-  if (!core.settings.one_sided_meshes && !gentle_.manifolds().empty()) {
+  if (!one_sided && !gentle_.manifolds().empty()) {
     const Vec3 normal = buffers.around.triangles()[place].across.normalized();
     const bool ahead =
         (to_pd(question.b.getWorldTransform()).rotation() * normal).dot(gentle_.manifolds()[0].normal) > 0;
@@ -345,12 +373,15 @@ bool MeshContacts::find_on_gentle(const btCollisionObjectWrapper& a, const Union
   }
   for (const ContactManifold& found : gentle_.manifolds()) {
     ContactManifold points = found;
+    double deepest = -1;
     for (int k = 0; k < points.count; ++k) {
       const double depth = points.points[static_cast<std::size_t>(k)].depth;
       if (depth > 0) one_sided_.add_way(depth * points.normal);
+      deepest = std::max(deepest, depth);
     }
     if (is_piece(a)) {
-      count_covered(drop_covered(question.of_pieces(a, question.b, core, buffers).as(body_, body_), points), buffers);
+      count_covered(drop_covered(question.of_pieces(a, question.b).as(body_, body_), points), buffers);
+      straddled_.note({met.child, static_cast<int>(triangle)}, deepest, points);
     }
     patches.add(points, static_cast<int>(triangle), part_of(child, met), met.index);
   }
@@ -371,7 +402,7 @@ bool MeshContacts::find_on_flat(ChildOnGround& standing, const btCollisionObject
                                .corner_rounding = kFlat,
                                .pose_rounding = kPoseRounding,
                                .one_sided = !standing.remembers_sides()};
-  const GroundPlace place{to_pd(a.getWorldTransform().getOrigin()), to_pd(question.a.getWorldTransform().getOrigin()),
+  const GroundPlace place{to_pd(a.getWorldTransform().getOrigin()), to_pd(whole_of(a).getWorldTransform().getOrigin()),
                           is_part(a)};
   if (!flat_.find(standing, place, ground)) return false;
   flat_.for_each_point([&](const ContactManifold& point, std::size_t triangle) {
@@ -381,16 +412,17 @@ bool MeshContacts::find_on_flat(ChildOnGround& standing, const btCollisionObject
   return true;
 }
 
-bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore& core, ThreadBuffers& buffers,
-                           PairMemory& memory, Patches& patches) {
+bool MeshContacts::find_of(const UnionQuestion& question, int place, Patches& patches) {
+  ThreadBuffers& buffers = question.buffers;
+  PairMemory& memory = question.memory;
   const Child& child = children_[static_cast<std::size_t>(place)];
   const BodyReach& reach = reaches_[static_cast<std::size_t>(place)];
   const btCollisionObjectWrapper& mesh = question.b;
   const btTransform& pose = mesh.getWorldTransform();
-  if (!together_) read_mesh(question, reach.lower(), reach.upper(), buffers);
+  if (!together_) read_mesh(question, reach.lower(), reach.upper());
   const std::size_t first = triangles_.size();
   choose_triangles(place, buffers.around, memory.standing);
-  const bool one_sided = core.settings.one_sided_meshes;
+  const bool one_sided = question.core.settings.one_sided_meshes;
   if (triangles_.size() == first) {
     if (!one_sided) sides_.pass(child.index, pose.inverseTimes(child.pose));
     return true;
@@ -400,8 +432,8 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore&
   const auto threshold = static_cast<double>(question.threshold);
   if (!one_sided) enter_sides(question, child, reach);
   const auto met_of_child = std::span<const MetTriangle>(triangles_).subspan(first);
-  ChildOnGround standing({question, a, is_part(a) ? a.m_index : -1, met_of_child, one_sided ? nullptr : &sides_}, core,
-                         buffers, memory.shape_of_child(0, child.index));
+  ChildOnGround standing({question, a, is_part(a) ? a.m_index : -1, met_of_child, one_sided ? nullptr : &sides_},
+                         memory.shape_of_child(0, child.index));
   const bool asked_one_by_one = still_ && !memory.standing.flat(static_cast<std::size_t>(place));
   if (!asked_one_by_one && find_on_flat(standing, a, question, first, patches)) {
     if (!memory.standing.empty()) memory.standing.set_flat(static_cast<std::size_t>(place));
@@ -410,10 +442,10 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore&
   // What stood on flat ground stands over an edge of it now: all are asked again in the next step.
   if (still_ && !asked_one_by_one) memory.standing.forget();
   one_sided_.clear();
-  const bool gentle = begin_gentle(a, question, place, core, memory);
+  const bool gentle = begin_gentle(a, question, place);
   for (std::size_t i = first; i < triangles_.size(); ++i) {
     const MetTriangle& met = triangles_[i];
-    if (gentle && find_on_gentle(a, question, i, core, buffers, patches)) continue;
+    if (gentle && find_on_gentle(a, question, i, patches)) continue;
     const TriangleInResult triangle(question.result, mesh, met);
     PairAnswer answer;
     PieceMemory* remembered = nullptr;
@@ -422,7 +454,7 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore&
     } else if (i - first < kMostRemembered) {
       remembered = &memories_.take(memory.pieces, number_of_pieces(child.index, met));
     }
-    const auto outcome = ask(a, child.pose, question, triangle, remembered, core, buffers, answer);
+    const auto outcome = ask({a, child.pose}, question, triangle, remembered, answer);
     if (outcome == SolverCore::Outcome::unsupported) return false;
     if (outcome != SolverCore::Outcome::answered) continue;
     if (remembered != nullptr) remembered->met = answer.depth.signed_distance() <= threshold;
@@ -439,12 +471,15 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, SolverCore&
       one_sided_.add_way_of(answer.depth);
     }
     ContactManifold points;
-    AskedPieces pieces = question.of_pieces(a, triangle.wrapper(), core, buffers);
+    AskedPieces pieces = question.of_pieces(a, triangle.wrapper());
     const PiecePair pair = pieces.as(answer.a, answer.b, front);
     count_covered(keep_uncovered(pair, answer.depth, AnswerPoints::to_be_made, points), buffers);
+    if (points.count == 0 && is_piece(a)) {
+      straddled_.note({place, static_cast<int>(i)}, -answer.depth.signed_distance(), points);
+    }
     patches.add(points, static_cast<int>(i), part_of(child, met), met.index);
   }
-  add_fronts(a, question, core, buffers, patches);
+  add_fronts(a, question, patches);
   return true;
 }
 

@@ -24,12 +24,8 @@ bool crosses_plane(const Vec3& from, const Vec3& to, const Vec3& normal, const M
   return normal.dot(from - corner) * normal.dot(to - corner) < 0;
 }
 
-/// True if a way leads from one side of a triangle's plane to the other through the triangle.
-bool leads_through(const Vec3& from, const Vec3& to, const Vec3& normal, const MetTriangle& met) {
-  if (!crosses_plane(from, to, normal, met)) return false;
-  const Vec3 corner = to_pd(met.corners[0]);
-  const double before = normal.dot(from - corner), after = normal.dot(to - corner);
-  const Vec3 place = from + before / (before - after) * (to - from);
+/// True if a place lies over or under a triangle, seen along its normal.
+bool is_over(const Vec3& place, const Vec3& normal, const MetTriangle& met) {
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec3 begin = to_pd(met.corners[i]), end = to_pd(met.corners[i < 2 ? i + 1 : 0]);
     if ((end - begin).cross(place - begin).dot(normal) < 0) return false;
@@ -37,14 +33,34 @@ bool leads_through(const Vec3& from, const Vec3& to, const Vec3& normal, const M
   return true;
 }
 
-/// True if a way that crosses a triangle's plane leads through it or through a triangle of nearly its direction. A body
-/// that comes aslant has come through the triangle beside the one that is the nearest now.
-bool leads_through_one(const Vec3& from, const Vec3& to, const Vec3& normal, std::span<const MetTriangle> around) {
+/// True if a way leads from one side of a triangle's plane to the other through the triangle.
+bool leads_through(const Vec3& from, const Vec3& to, const Vec3& normal, const MetTriangle& met) {
+  if (!crosses_plane(from, to, normal, met)) return false;
+  const Vec3 corner = to_pd(met.corners[0]);
+  const double before = normal.dot(from - corner), after = normal.dot(to - corner);
+  return is_over(from + before / (before - after) * (to - from), normal, met);
+}
+
+/// True if a triangle of nearly this direction does so. `test` gets its own normal, too.
+template <class Test>
+bool any_alike(const Vec3& normal, std::span<const MetTriangle> around, const Test& test) {
   return std::any_of(around.begin(), around.end(), [&](const MetTriangle& met) {
     const Vec3 corner = to_pd(met.corners[0]);
     const Vec3 own = (to_pd(met.corners[1]) - corner).cross(to_pd(met.corners[2]) - corner).normalized();
-    return std::abs(own.dot(normal)) > kOfOneWay && leads_through(from, to, own, met);
+    return std::abs(own.dot(normal)) > kOfOneWay && test(own, met);
   });
+}
+
+/// True if a way that crosses a triangle's plane leads through it or through a triangle of nearly its direction. A body
+/// that comes aslant has come through the triangle beside the one that is the nearest now.
+bool leads_through_one(const Vec3& from, const Vec3& to, const Vec3& normal, std::span<const MetTriangle> around) {
+  return any_alike(normal, around,
+                   [&](const Vec3& own, const MetTriangle& met) { return leads_through(from, to, own, met); });
+}
+
+/// True if a place lies over or under a triangle of nearly this direction. A plane goes on beyond its triangles.
+bool is_over_one(const Vec3& place, const Vec3& normal, std::span<const MetTriangle> around) {
+  return any_alike(normal, around, [&](const Vec3& own, const MetTriangle& met) { return is_over(place, own, met); });
 }
 
 }  // namespace
@@ -132,7 +148,10 @@ Vec3 SheetSides::judge(const MetTriangle& met, const Vec3& normal, std::span<con
       front = beside(std::span(fresh_).subspan(first_of_child_), normal, place);
       if (front.isZero() && comes_through) front = beside(memory_->fronts, normal, place);
     }
-    if (front.isZero() && overlapping && comes_through && side.dot(before_ - corner) < 0) front = -side;
+    if (front.isZero() && overlapping && comes_through && side.dot(before_ - corner) < 0 &&
+        is_over_one(before_, normal, around)) {
+      front = -side;
+    }
     if (front.isZero() && crossed) {
       // A body that crossed the plane where no triangle is known came through a triangle or around a rim.
       sure = leads_through_one(came, now, normal, around);

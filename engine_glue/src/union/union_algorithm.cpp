@@ -48,7 +48,8 @@ class PiecesOfPoints final : public PointSurroundings {
   PiecesOfPoints(const UnionQuestion& question, const UnionContacts& contacts)
       : question_(question), contacts_(contacts) {}
   void enter(int piece) override {
-    const auto& [a, b, time, threshold, stamp, result] = question_;
+    const btCollisionObjectWrapper &a = question_.a, &b = question_.b;
+    btManifoldResult& result = question_.result;
     const PointPieces pieces = contacts_.pieces_of(piece);
     child_of_a_.emplace(result, a, pieces.of_a);
     if (pieces.child_of_b != nullptr) {
@@ -114,21 +115,20 @@ struct UnionAlgorithm::State {
 
   /// Finds the pair's patches. Trials that begin at one state take what the first one found: it is the longest, so that
   /// no point is missing. @return null: Bullet's own algorithm has to answer
-  UnionSearch* find(const UnionQuestion& question, ThreadBuffers& buffers);
+  UnionSearch* find(const UnionQuestion& question);
 
  private:
   std::unique_ptr<FoundInTrial> found_;  ///< in worlds that are stepped in trials
 };
 
-UnionSearch* UnionAlgorithm::State::find(const UnionQuestion& question, ThreadBuffers& buffers) {
-  SolverCore& core = world.core();
-  const std::uint64_t trials = core.trials();
+UnionSearch* UnionAlgorithm::State::find(const UnionQuestion& question) {
+  const std::uint64_t trials = question.core.trials();
   UnionPairMemory& memory = manifolds.memory();
   if (trials == 0) {
     if (found_) found_->trials = 0;
-    UnionSearch& search = ThreadSearches::of(buffers, kind.contacts);
+    UnionSearch& search = ThreadSearches::of(question.buffers, kind.contacts);
     search.patches.clear();
-    const bool found = search.contacts->find(question, core, buffers, manifolds.memory(), search.patches);
+    const bool found = search.contacts->find(question, search.patches);
     return found ? &search : nullptr;
   }
   const btTransform& pose_a = question.a.getWorldTransform();
@@ -142,7 +142,7 @@ UnionSearch* UnionAlgorithm::State::find(const UnionQuestion& question, ThreadBu
   UnionSearch& search = found_->search;
   search.patches.clear();
   found_->trials = 0;
-  if (!search.contacts->find(question, core, buffers, manifolds.memory(), search.patches)) return nullptr;
+  if (!search.contacts->find(question, search.patches)) return nullptr;
   found_->trials = trials;
   found_->threshold = question.threshold;
   found_->pose_a = pose_a;
@@ -177,13 +177,21 @@ void UnionAlgorithm::processCollision(const btCollisionObjectWrapper* a, const b
     const btScalar threshold = first.getContactBreakingThreshold() + result->m_closestPointDistanceThreshold;
     const FlatWrapper flat_one(one, core.flat_compounds, stamp, s.flat[0]);
     const FlatWrapper flat_other(other, core.flat_compounds, stamp, s.flat[1]);
-    const UnionQuestion question{flat_one.wrapper(), flat_other.wrapper(), time_of(info), threshold, stamp, *result};
     auto buffers = core.buffers.lease();
-    if (UnionSearch* search = s.find(question, *buffers)) {
+    const UnionQuestion question{.a = flat_one.wrapper(),
+                                 .b = flat_other.wrapper(),
+                                 .time = time_of(info),
+                                 .threshold = threshold,
+                                 .stamp = stamp,
+                                 .result = *result,
+                                 .core = core,
+                                 .buffers = *buffers,
+                                 .memory = s.manifolds.memory()};
+    if (UnionSearch* search = s.find(question)) {
       s.bullets.release();
       PiecesOfPoints pieces(question, *search->contacts);
       s.manifolds.replace(search->patches, question.time, *result, pieces);
-      search->contacts->remember_chosen(search->patches, s.manifolds.memory());
+      search->contacts->remember_chosen(search->patches, question.memory);
       return;
     }
   }

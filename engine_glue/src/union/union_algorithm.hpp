@@ -25,10 +25,13 @@ struct UnionQuestion {
   btScalar threshold;  ///< up to which gap points are contacts
   std::uint64_t stamp;
   btManifoldResult& result;
+  SolverCore& core;
+  ThreadBuffers& buffers;
+  PairMemory& memory;  ///< of the pair
 
   /// Two pieces of the pair, as the rule for covered contacts is asked about them.
-  [[nodiscard]] AskedPieces of_pieces(const btCollisionObjectWrapper& piece_a, const btCollisionObjectWrapper& piece_b,
-                                      SolverCore& core, ThreadBuffers& buffers) const {
+  [[nodiscard]] AskedPieces of_pieces(const btCollisionObjectWrapper& piece_a,
+                                      const btCollisionObjectWrapper& piece_b) const {
     return {piece_a,
             piece_b,
             {.threshold = static_cast<double>(threshold),
@@ -60,8 +63,7 @@ class UnionContacts {
 
   /// Adds the points of all pieces to `patches`, each piece's under the rule of covered_contact.hpp.
   /// @return false where a piece is not convex or has no exact form: Bullet's own algorithm answers for the pair then
-  virtual bool find(const UnionQuestion& question, SolverCore& core, ThreadBuffers& buffers, PairMemory& memory,
-                    Patches& patches) = 0;
+  virtual bool find(const UnionQuestion& question, Patches& patches) = 0;
   /// Returns the pieces that a point of the patches lies between, by its piece's number. Requires: `find` filled them.
   [[nodiscard]] virtual PointPieces pieces_of(int piece) const = 0;
   /// Takes note of the points that were chosen.

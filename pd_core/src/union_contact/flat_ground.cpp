@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "pd/contact/time_of_impact.hpp"
+#include "pd/union_contact/straddled.hpp"
 #include "pd/union_contact/union_piece.hpp"
+#include "union_contact/column.hpp"
 
 namespace pd {
 
@@ -136,11 +138,48 @@ bool FlatGround::ask(StandingBody& body, const GroundPlace& place, const GroundT
     turn_to(place.origin_of_whole);
     if (!stand() || -found.lower - ground.margin > (1 - kShallow) * (found.highest - found.lower)) return false;
   }
+  if (!ground.one_sided && !comes_through(body.posed(), found, ground, number)) return false;
   plane.points = found.manifold;
   plane.front = ground.mesh.rotation().transpose() * normal;
   if (found.manifold.count == 0) return true;
   body.drop_covered(plane.points);
+  if (plane.points.count == 0 && place.is_part && !ground.one_sided) {
+    // A part that others cover on its own side leaves on the side of the whole.
+    const Vec3 side = side_towards(place.origin_of_whole, front, corner);
+    if (normal.dot(side) < 0) {
+      normal = side;
+      if (!stand()) return false;
+      plane.points = found.manifold;
+      plane.front = ground.mesh.rotation().transpose() * normal;
+      body.drop_covered(plane.points);
+    }
+  }
   return find_under(body.posed(), normal, ground, number);
+}
+
+bool FlatGround::lies_over(const Vec3& place, const GroundTriangles& ground, int number, double slack) const {
+  for (std::size_t i = 0; i < ground.corners.size(); ++i) {
+    if (plane_of_[i] == number && holds(ground.corners[i], across_[i], place, slack)) return true;
+  }
+  return false;
+}
+
+bool FlatGround::comes_through(const PosedShape& body, const HalfspaceContact& found, const GroundTriangles& ground,
+                               int number) const {
+  const ContactManifold& points = found.manifold;
+  const auto begin = points.points.begin();
+  const auto deepest = std::max_element(begin, begin + points.count,
+                                        [](const ContactPoint& x, const ContactPoint& y) { return x.depth < y.depth; });
+  if (deepest == begin + points.count || deepest->depth <= detail::kLookedAt * (found.highest - found.lower))
+    return true;
+  const double depth = deepest->depth - ground.margin;
+  if (detail::reaches_back(body, deepest->position_a, points.normal, depth)) return true;
+  // The body may also pass the plane aslant, on the way from there to its middle.
+  const Vec3 way = detail::middle_of(body) - deepest->position_a;
+  const double height = points.normal.dot(way);
+  if (height <= depth) return false;
+  const Vec3 place = deepest->position_a + depth / height * way;
+  return lies_over(ground.mesh.rotation().transpose() * (place - ground.mesh.translation()), ground, number, 0);
 }
 
 bool FlatGround::find_under(const PosedShape& body, const Vec3& normal, const GroundTriangles& ground, int number) {

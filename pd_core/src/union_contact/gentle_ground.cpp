@@ -7,6 +7,7 @@
 
 #include "pd/union_contact/flat_ground.hpp"
 #include "pd/union_contact/union_piece.hpp"
+#include "union_contact/column.hpp"
 
 namespace pd {
 
@@ -30,6 +31,7 @@ bool GentleGround::begin(const PosedShape& body, const Ground& ground, double th
   lower_ = ground.lower;
   upper_ = ground.upper;
   mesh_ = ground.mesh;
+  body_ = body;
   origin_ = body.pose.translation();
   margin_ = body.shape->margin();
   mesh_margin_ = ground.margin;
@@ -298,6 +300,11 @@ bool GentleGround::ask(std::size_t place) {
   const auto nearest = std::min_element(
       left.begin(), left.end(), [&](const Corner& x, const Corner& y) { return n.dot(x.point) < n.dot(y.point); });
   if (n.dot(nearest->point) - placed.level > threshold_) return true;
+  const double depth = placed.level - n.dot(nearest->point);
+  if (!one_sided_ && depth > detail::kLookedAt * (highest - lowest + 2 * margin_) &&
+      !detail::reaches_back(body_, nearest->point - margin_ * n, n, depth - mesh_margin_)) {
+    return false;
+  }
   const std::optional<Vec3> way = way_at(*nearest, loop, facet, placed, place);
   if (!way || way->dot(n) < kFacing) return false;
   if (*way != n) cut_facet(loop, placed, *way);

@@ -34,6 +34,10 @@ std::int64_t feature_of_piece(std::int64_t feature, int i, int j) {
 
 }  // namespace
 
+bool Patches::overlap() const {
+  return std::any_of(points_.begin(), points_.end(), [](const Point& point) { return point.contact.depth > 0; });
+}
+
 void Patches::clear() {
   points_.clear();
   patches_.clear();

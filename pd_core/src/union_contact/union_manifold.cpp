@@ -10,6 +10,7 @@
 #include "pd/union_contact/deep_union.hpp"
 #include "pd/union_contact/one_sided.hpp"
 #include "pd/union_contact/patches.hpp"
+#include "pd/union_contact/straddled.hpp"
 #include "union_contact/piece_store.hpp"
 
 namespace pd {
@@ -81,6 +82,10 @@ class Asked {
   void ask(int i, int j);
   /// Adds the contacts along the fronts of triangles that piece i stands through, if no contact of it leads off them.
   void add_fronts(int i);
+  /// Adds the way out of the whole of A along the front of a triangle.
+  void add_front(int i, const OneSided::Behind& behind);
+  /// Adds the way out of the whole off a sheet where no contact of a piece is left that overlaps.
+  void leave_straddled();
   PiecePair pair_of(PieceAmong& around_a, PieceAmong& around_b, const PosedShape& a, const PosedShape& b) const;
   void add(int i, int j, const ContactManifold& points) {
     pairs_.emplace_back(i, j);
@@ -96,6 +101,7 @@ class Asked {
   Patches patches_;
   DeepUnion deep_;
   OneSided one_sided_;
+  StraddledTriangles straddled_;
   std::int64_t covered_ = 0;
 };
 
@@ -126,7 +132,11 @@ void Asked::ask(int i, int j) {
   pair.front = front;
   ContactManifold points = contact_manifold(a, b, depth, settings_.breaking_threshold, scratch_.manifold);
   covered_ += keep_uncovered(pair, depth, AnswerPoints::made, points);
-  if (!b_.is_sheet()) deep_.add({depth, a, b, i, j}, points);
+  if (!b_.is_sheet()) {
+    deep_.add({depth, a, b, i, j}, points);
+  } else if (a_.size() > 1) {
+    straddled_.note({i, j}, -depth.signed_distance(), points);
+  }
   add(i, j, points);
 }
 
@@ -141,11 +151,26 @@ void Asked::add_fronts(int i) {
                              Pose::from_trusted_matrix(a.pose.rotation(), a.pose.translation() + kClear * way)};
       return penetration_depth(moved, b, scratch_.depth, depth_settings_).contact != ContactClass::overlapping;
     });
-    if (left) continue;
-    PieceAmong around_a(a_, i), around_b(b_, behind.triangle);
-    PiecePair pair = pair_of(around_a, around_b, a, b);
-    pair.front = behind.front;
-    add(i, behind.triangle, along_front(pair));
+    if (!left) add_front(i, behind);
+  }
+}
+
+void Asked::add_front(int i, const OneSided::Behind& behind) {
+  const PosedShape a = a_.posed(i), b = b_.posed(behind.triangle);
+  PieceAmong around_a(a_, i), around_b(b_, behind.triangle);
+  PiecePair pair = pair_of(around_a, around_b, a, b);
+  pair.front = behind.front;
+  add(i, behind.triangle, along_front(pair));
+}
+
+void Asked::leave_straddled() {
+  const TriangleBox box = a_.whole_box();
+  const Vec3 middle = 0.5 * (box.low + box.high);
+  for (const auto& [i, j] : straddled_.need_way_out(patches_)) {
+    const PosedShape b = b_.posed(j);
+    const Vec3 corner = b.pose.apply(b.shape->polytope()->vertex(0));
+    const Vec3 normal = b_.front(j);
+    add_front(i, {j, settings_.one_sided ? normal : side_towards(middle, normal, corner)});
   }
 }
 
@@ -162,6 +187,7 @@ bool Asked::ask_pairs() {
     for (const int j : near_b) ask(i, j);
     add_fronts(i);
   }
+  leave_straddled();
   return true;
 }
 

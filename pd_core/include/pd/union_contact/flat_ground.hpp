@@ -103,6 +103,12 @@ class FlatGround {
   bool ask(StandingBody& body, const GroundPlace& place, const GroundTriangles& ground, int number);
   /// Returns the side of the plane that the body came from, unit and in the mesh's frame; zero if it is not known.
   [[nodiscard]] Vec3 known_front(const StandingBody& body, std::size_t num_triangles, int number) const;
+  /// True if a place, in the mesh's frame, lies over a triangle of the plane.
+  [[nodiscard]] bool lies_over(const Vec3& place, const GroundTriangles& ground, int number, double slack) const;
+  /// Returns false if the body lies behind the plane as a whole where it is deepest: the plane goes on beyond its
+  /// triangles.
+  [[nodiscard]] bool comes_through(const PosedShape& body, const HalfspaceContact& found, const GroundTriangles& ground,
+                                   int number) const;
   /// Finds the triangles under the plane's points. @return false if a point lies over none
   bool find_under(const PosedShape& body, const Vec3& normal, const GroundTriangles& ground, int number);
 

@@ -97,6 +97,7 @@ class GentleGround {
   void add_points(const Placed& triangle, const Vec3& n);
 
   SharedEdges edges_;
+  PosedShape body_{};
   const ConvexPolytope* polytope_ = nullptr;
   bool sphere_ = false;
   std::span<const Triangle> around_;

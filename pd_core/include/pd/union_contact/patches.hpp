@@ -45,6 +45,8 @@ class Patches {
 
   /// True if no points were added.
   [[nodiscard]] bool empty() const { return points_.empty(); }
+  /// True if a point has a depth above 0. Time O(p) in p points.
+  [[nodiscard]] bool overlap() const;
   /// Drops the points whose normals are more than 60 degrees off `normal`.
   void keep_along(const Vec3& normal);
 
