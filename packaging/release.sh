@@ -61,5 +61,8 @@ build() {
 case ${1-} in
   check) check ;;
   build) check && build "${2-}" ;;
-  *) sed -n '2,12s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" ;;
+  *)
+    sed -n '2,12s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2
+    exit 2
+    ;;
 esac

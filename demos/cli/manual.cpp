@@ -53,7 +53,9 @@ std::vector<std::string> choices_of(const CLI::Option& option) {
   return CLI::detail::split(type.substr(open + 1, close - open - 1), ',');
 }
 
-/// "-o, --output FILE.obj"
+bool is_flag(const CLI::Option& option) { return option.get_expected_max() == 0 || option.get_type_size_max() == 0; }
+
+/// "-o, --output FILE.obj", or "--complete[=straight|escape]" for a flag that may carry a word.
 std::string heading_of(const CLI::Option& option) {
   if (!option.nonpositional()) return fmt::format("\\fI{}\\fR", roff(option.get_name(true)));
   std::string names;
@@ -61,11 +63,11 @@ std::string heading_of(const CLI::Option& option) {
     names += fmt::format("{}\\fB{}\\fR", names.empty() ? "" : ", ", roff(name));
   }
   const std::vector<std::string> words = choices_of(option);
-  const bool flag = option.get_expected_max() == 0 || option.get_type_size_max() == 0;
   if (const std::string list = fmt::format("{}", fmt::join(words, "|")); !words.empty()) {
+    if (is_flag(option)) return names + roff("[=" + list + "]");
     return names + (list.size() <= kLongestChoice ? roff(" " + list) : " \\fIWORD\\fR");
   }
-  if (flag) return names;
+  if (is_flag(option)) return names;
   std::string type = option.get_type_name();
   if (const std::size_t colon = type.rfind(':'); colon != std::string::npos) type.erase(0, colon + 1);
   return names + fmt::format(" \\fI{}\\fR", roff(type));
@@ -118,7 +120,7 @@ std::string subcommand_page(const CLI::App& command) {
   return text + ".SH SEE ALSO\n\\fBpdepth\\fR(1)\n";
 }
 
-/// A line of the script's table: the words that may follow, by "subcommand" or "subcommand option".
+/// A line of the script's table: the words that may follow a subcommand, its option, or its option and "=".
 std::string completion_case(const std::string& pattern, const std::vector<std::string>& words) {
   return fmt::format("    '{}') words='{}' ;;\n", pattern, fmt::join(words, " "));
 }
@@ -150,9 +152,14 @@ std::string bash_completion(const CLI::App& app) {
       if (!option->nonpositional()) continue;
       for (const std::string& word : CLI::detail::split(option->get_name(false, true), ',')) {
         words.push_back(word);
-        if (const auto list = choices_of(*option); !list.empty()) {
+        const std::vector<std::string> list = choices_of(*option);
+        if (list.empty()) continue;
+        choices += completion_case(name + " " + word + "=", list);
+        if (!is_flag(*option)) {
           choices += completion_case(name + " " + word, list);
+          continue;
         }
+        for (const std::string& choice : list) words.push_back(word + "=" + choice);
       }
     }
     options += completion_case(name, words);
@@ -168,12 +175,18 @@ std::string bash_completion(const CLI::App& app) {
   return fmt::format(R"(# Completion of pdepth for bash, written by `pdepth help --completion bash`.
 _pdepth() {{
   local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD-1]}} words=''
+  # Readline takes "=" for a word of its own.
+  if [[ $word == = ]]; then
+    word='' before+='='
+  elif [[ $before == = ]]; then
+    before=${{COMP_WORDS[COMP_CWORD-2]}}=
+  fi
   if ((COMP_CWORD == 1)); then
-    COMPREPLY=($(compgen -W '{}' -- "$word"))
+    mapfile -t COMPREPLY < <(compgen -W '{}' -- "$word")
     return
   fi
   if [[ ${{COMP_WORDS[1]}} == help ]]; then
-    COMPREPLY=($(compgen -W '{}' -- "$word"))
+    mapfile -t COMPREPLY < <(compgen -W '{}' -- "$word")
     return
   fi
   case "${{COMP_WORDS[1]}} $before" in
@@ -183,10 +196,10 @@ _pdepth() {{
 {}    esac
   fi
   if [[ -n $words ]]; then
-    COMPREPLY=($(compgen -W "$words" -- "$word"))
+    mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word")
   else
     compopt -o filenames 2>/dev/null
-    COMPREPLY=($(compgen -f -- "$word"))
+    mapfile -t COMPREPLY < <(compgen -f -- "$word")
   fi
 }}
 complete -F _pdepth pdepth

@@ -38,7 +38,7 @@ turned round. Curves become polylines: no point of one lies farther than --flatn
 Without --direction the least move over all directions is found. With --complete Q shall get away for good:
   --complete=straight  going on straight along the move's own direction, for ever
   --complete=escape    by any motion: Q comes to where a way leads out, not into a hole that it fits in
---complete alone (by-direction) is straight with --direction, escape without.
+--complete alone is straight with --direction, escape without.
 
 If Q fits exactly into a hole or a notch, the place has no area and is no way out: the answer says that Q fits, and --seats
 lists all such displacements.
@@ -65,7 +65,7 @@ struct PolygonArguments {
 
 constexpr const char* kStraight = "straight";
 constexpr const char* kEscape = "escape";
-constexpr const char* kByDirection = "by-direction";  ///< --complete without a word
+constexpr const char* kByDirection = "true";  ///< --complete without a word: CLI11's value of a flag
 
 struct PolygonPair {
   drawing::PolygonFile p, q;
@@ -294,11 +294,12 @@ void add_polygon_command(CLI::App& app, Action& action) {
   command->add_option("--direction", arguments->direction, "Move along X,Y [the best direction]");
   // A flag, so that a file may follow --complete alone; a word comes behind "=".
   command
-      ->add_flag(fmt::format("--complete{{{}}}", kByDirection), arguments->complete,
+      ->add_flag("--complete", arguments->complete,
                  "Get away for good, not only clear of P: --complete=straight or --complete=escape")
       ->check([words = one_of({kStraight, kEscape})](
                   const std::string& word) { return word == kByDirection ? std::string() : words(word); },
-              "");
+              fmt::format("{{{},{}}}", kStraight, kEscape))
+      ->option_text("or --complete=WORD");
   command->add_option("--place-q", arguments->place, "Displacement X,Y of Q before it is looked at [0,0]");
   command
       ->add_option("--flatness", arguments->flatness, "Greatest distance of a curve from its chords [1e-4 of the size]")

@@ -255,17 +255,30 @@ TEST_F(Newcomer, HasManualPagesAndCompletion) {
   for (const char* words : {".TH pdepth-simplify 1", "\\fB\\-\\-epsilon\\fR", "outer|inner", "[0.001]", "Examples:"}) {
     EXPECT_NE(page.find(words), std::string::npos) << words << "\n" << page;
   }
+  EXPECT_EQ(shell("grep -qF '\\-\\-complete\\fR[=straight|escape]' pages/pdepth-polygon.1"), 0)
+      << read("pages/pdepth-polygon.1");
+  EXPECT_EQ(shell("pdepth polygon --help | grep -E '^ *--complete or --complete=WORD$'"), 0) << read("out");
   EXPECT_EQ(shell("pdepth help --completion bash"), 0);
+  write("my part.obj", kCubeText);
   write("complete.sh", read("out") + R"(
-complete_words() { COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); COMPREPLY=(); _pdepth; echo "${COMPREPLY[*]}"; }
+complete_words() { COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); COMPREPLY=(); _pdepth; (IFS='|'; echo "${COMPREPLY[*]}"); }
 complete_words pdepth dep
 complete_words pdepth simplify --ep
 complete_words pdepth simplify scan.ply --side ''
 complete_words pdepth check cube
 complete_words pdepth help aud
+complete_words pdepth check my
+complete_words pdepth polygon --com
+complete_words pdepth polygon --complete =
+complete_words pdepth polygon --complete = str
+complete_words pdepth simplify --side = o
+complete_words pdepth polygon --complete my
 )");
   EXPECT_EQ(shell("bash complete.sh"), 0);
-  EXPECT_EQ(read("out"), "depth\n--epsilon\nouter inner\ncube.obj\naudit\n") << read("err");
+  EXPECT_EQ(read("out"),
+            "depth\n--epsilon\nouter|inner\ncube.obj\naudit\nmy part.obj\n"
+            "--complete|--complete=straight|--complete=escape\nstraight|escape\nstraight\nouter\nmy part.obj\n")
+      << read("err");
 }
 
 }  // namespace
