@@ -200,6 +200,12 @@ TEST(ApproximateIntersection, RefusesByName) {
     EXPECT_EQ(refused.error().where, "epsilon");
   }
   EXPECT_EQ(approximate_intersection<2>(coarse, 1e-3).error().code, ErrorCode::bad_value);  // preprocessed at 1e-3
+  EXPECT_NE(approximate_intersection<2>(coarse, 4e-8)
+                .error()
+                .message.find("0.001; this query needs a quarter of its own "
+                              "epsilon, 1e-08"),
+            std::string::npos)
+      << approximate_intersection<2>(coarse, 4e-8).error().message;
   EXPECT_TRUE(approximate_intersection<2>(coarse, 4e-3));
   EXPECT_EQ(ComposedBody<2>::sum_of({}).error().code, ErrorCode::bad_value);
   AffineMap<2> flat;

@@ -8,6 +8,7 @@
 #include "dimension/composed/composed_node.hpp"
 #include "dimension/origin_frame.hpp"
 #include "dimension/origin_search.hpp"
+#include "numeric/number_text.hpp"
 
 namespace pd::dimension {
 
@@ -146,8 +147,8 @@ Expected<IntersectionAnswer> meet(std::span<const Composed> bodies, const AnyVec
   for (const Composed& body : bodies) {
     if (body->epsilon > epsilon / 4) {
       return Error{ErrorCode::bad_value,
-                   "the bodies are preprocessed at epsilon " + std::to_string(body->epsilon) +
-                       "; this query needs a quarter of its own epsilon",
+                   "the bodies are preprocessed at epsilon " + pd::detail::number_text(body->epsilon) +
+                       "; this query needs a quarter of its own epsilon, " + pd::detail::number_text(epsilon / 4),
                    "epsilon"};
     }
   }

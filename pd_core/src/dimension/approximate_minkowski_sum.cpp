@@ -9,6 +9,7 @@
 #include "dimension/composed/growing_sum.hpp"
 #include "dimension/equal_planes.hpp"
 #include "numeric/floating_point_guard.hpp"
+#include "numeric/number_text.hpp"
 
 namespace pd::dimension {
 
@@ -77,8 +78,8 @@ Expected<AnySum> approximation_of(const Composed& sum, double epsilon, Represent
   const double needed = detail::allowed_error(*sum, grown.ratio(), epsilon / 2);
   if (sum->epsilon > needed) {
     return Error{ErrorCode::bad_value,
-                 "the bodies are preprocessed at epsilon " + std::to_string(sum->epsilon) + "; this query needs " +
-                     std::to_string(needed),
+                 "the bodies are preprocessed at epsilon " + pd::detail::number_text(sum->epsilon) +
+                     "; this query needs " + pd::detail::number_text(needed),
                  "epsilon"};
   }
   // Outer: blown up by 1 + epsilon / 2 about a point inside, no support grows by more than epsilon / 2 of the width.

@@ -8,6 +8,7 @@
 
 #include "dimension/composed/growing_sum.hpp"
 #include "dimension/equal_planes.hpp"
+#include "numeric/number_text.hpp"
 
 namespace pd::dimension::detail {
 
@@ -27,8 +28,8 @@ using Facets = std::vector<TwoOffsets>;
 
 Error too_coarse(const Composed& part, double needed) {
   return Error{ErrorCode::bad_value,
-               "the bodies are preprocessed at epsilon " + std::to_string(part->epsilon) +
-                   "; an intersection inside needs " + std::to_string(needed),
+               "the bodies are preprocessed at epsilon " + pd::detail::number_text(part->epsilon) +
+                   "; an intersection inside needs " + pd::detail::number_text(needed),
                "epsilon"};
 }
 
