@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <vector>
 
 #include "oracle/contact_check.hpp"
 #include "oracle/judged_pair.hpp"
@@ -266,6 +267,46 @@ TEST(ContactBracket, FlatBodiesThroughEachOther) {
 }
 
 /// Curved bodies: against the interval of a much narrower search.
+/// Corners that lie an ulp apart fall together once they are moved: no side of the facet is left to lie inside of.
+TEST(ContactBracket, SliversWhoseCornersFallTogether) {
+  const double most_of_1 = std::nextafter(1.0, 0.0), most_of_2 = std::nextafter(2.0, 0.0);
+  const ConvexShape box(*ConvexPolytope::box({3, 2, 2}));
+  const ConvexShape sliver(*ConvexPolytope::from_points(
+      std::vector<Vec3>{{-1, 2, most_of_1}, {-1, 2, 1}, {-most_of_1, most_of_2, most_of_1}}));
+  const ConvexShape speck(*ConvexPolytope::from_points(std::vector<Vec3>{{0, 0, 0}, {1e-17, 0, 0}, {0, 1e-17, 0}}));
+  const ConvexShape ball = *ConvexShape::sphere(1);
+  const auto at = [](const Vec3& place) { return Pose::from_trusted_matrix(Mat3::Identity(), place); };
+  Scratch scratch;
+  const PosedShape posed_box{&box, at({2, -2, -1})}, posed_ball{&ball, at({2, -2, -1})};
+  for (const PosedShape& other : {posed_box, posed_ball}) {
+    for (const PosedShape& thin : {PosedShape{&sliver, at({-1.5, 0, 2})}, PosedShape{&speck, at({-1.5, 4, 2})}}) {
+      const PenetrationDepth exact = penetration_depth(thin, other, scratch);
+      ASSERT_EQ(exact.contact, ContactClass::separated);
+      for (const double tolerance : {0.0, 1e-6}) {
+        const PenetrationDepth answer = penetration_depth(thin, other, scratch, contact(tolerance));
+        EXPECT_EQ(answer.contact, ContactClass::separated);
+        EXPECT_NEAR(answer.distance, exact.distance, 1e-6 * exact.distance);
+      }
+    }
+  }
+}
+
+/// A point with a margin in a sliver that no double tells from a segment: every bound comes from the axes.
+TEST(ContactBracket, FlatBodiesWithoutADirectionAcross) {
+  const std::vector<Vec3> corners{
+      {-5, 3, -0x1.ba42df6c31716p-544}, {-2, 3, -0x1.26d73f9d764b9p-544}, {-2, 3, 0x1.ba42df6c31716p-544}};
+  const ConvexShape sliver(*ConvexPolytope::from_points(corners));
+  const ConvexShape ball = *ConvexShape(*ConvexPolytope::from_points(std::vector<Vec3>{Vec3::Zero()})).with_margin(3);
+  const auto at = [](const Vec3& place) { return Pose::from_trusted_matrix(Mat3::Identity(), place); };
+  Scratch scratch;
+  const PenetrationDepth answer =
+      penetration_depth({&ball, at({-3, 2, 2})}, {&sliver, at({-1, -1, 2})}, scratch, contact(0));
+  EXPECT_EQ(answer.contact, ContactClass::overlapping);
+  EXPECT_TRUE(answer.lower <= 3 && answer.upper >= 3 && answer.upper <= 3 + 1e-12)
+      << answer.lower << " " << answer.upper;
+  EXPECT_TRUE(answer.translation.allFinite());
+}
+
 TEST(ContactBracket, CurvedBodiesOnFloors) {
   // Three feet of their own radii, all half a unit below the origin, and a head.
   const std::vector<Sphere> kFeet{

@@ -40,4 +40,21 @@ TEST(Warm, CertificateOfAnotherPairIsRefused) {
   EXPECT_GE(answer.upper, 1.7);
 }
 
+/// Some brackets take a ball out of a curved core. The points that are kept belong to what is left of it.
+TEST(Warm, OneMemoryServesEveryBracket) {
+  using pd::Bracket;
+  const ConvexShape ellipsoid = *ConvexShape::ellipsoid({3, 1, 2});
+  const ConvexShape box(ConvexPolytope::box(Vec3(1, 2, 1)).value());
+  const Pose pose = Pose::from_matrix(pd::Mat3::Identity(), Vec3(3, 4, 5)).value();
+  pd::Scratch scratch;
+  const auto exact = penetration_depth({&ellipsoid, Pose()}, {&box, pose}, scratch);
+  pd::WarmCertificate warm;
+  for (const Bracket bracket : {Bracket::contact, Bracket::certified, Bracket::contact, Bracket::tightest}) {
+    const auto answer = penetration_depth({&ellipsoid, Pose()}, {&box, pose}, scratch, {.bracket = bracket}, &warm);
+    EXPECT_LE(answer.distance_lower, exact.distance_upper);
+    EXPECT_GE(answer.distance_upper, exact.distance_lower);
+    EXPECT_LE(answer.distance_lower, answer.distance_upper);
+  }
+}
+
 }  // namespace

@@ -30,6 +30,7 @@ struct WarmSmoothPoints {
   Vec3 on_a[3];
   Vec3 on_b[3];
   int count = 0;
+  double taken_out = 0;  ///< of the radii of the cores that hold the points, which brackets choose
 };
 
 /// Of bodies that rest on each other: the facet of either that faces the other, and how often they were of no use

@@ -42,6 +42,9 @@ struct FacetContact {
 /// facet's normal, for certain, under any rotation up to single precision: by convexity it is enough to look at these.
 [[nodiscard]] bool is_supporting_facet(const ConvexPolytope& polytope, int facet);
 
+/// Squared edges from here on, and their quotients, have all digits. Corners may round to one point, which has no side.
+inline constexpr double kLeastSquaredEdge = 0x1p-900;
+
 /// @param rotation     of the facet's owner, any matrix that is a rotation up to single precision.
 /// @param offset       translation of the body less that of the owner.
 /// @param body_centre  a point inside the body, relative to its translation.
@@ -64,7 +67,7 @@ FacetContact facet_contact(const ConvexPolytope& owner, const Mat3& rotation, in
   // Corners of F: how high they are, and how far its sides lie from the projection.
   const auto loop = owner.facet_vertices(facet);
   Vec3 last = rotation * owner.vertex(loop[loop.size() - 1]) - a;
-  double greatest = -std::numeric_limits<double>::infinity(), least = -greatest, side = -greatest;
+  double greatest = -std::numeric_limits<double>::infinity(), least = -greatest, side = -greatest, shortest = -greatest;
   Vec3 extent = Vec3::Zero();
   for (const std::int32_t v : loop) {
     const Vec3 corner = rotation * owner.vertex(v) - a;
@@ -75,13 +78,15 @@ FacetContact facet_contact(const ConvexPolytope& owner, const Mat3& rotation, in
     const Vec3 edge = corner - last;
     // The signed square of the distance: inside is to the left of every edge.
     const double twice_area = n.dot(last.cross(edge));
-    side = std::min(side, twice_area * std::abs(twice_area) / edge.squaredNorm());
+    const double squared = edge.squaredNorm();
+    side = std::min(side, twice_area * std::abs(twice_area) / squared);
+    shortest = std::min(shortest, squared);
     last = corner;
   }
   out.gap = -greatest;
   out.largest = extent.maxCoeff();
   out.lower = -greatest - error;
-  const double inside = side > 0 ? std::sqrt(side) - 2 * error : 0;
+  const double inside = side > 0 && shortest >= kLeastSquaredEdge ? std::sqrt(side) - 2 * error : 0;
   if (!(inside > 0)) return out;
   out.certified = true;
   out.upper = std::max(std::abs(greatest), std::abs(least)) + error;

@@ -47,7 +47,10 @@ std::optional<double> foot_inside_facet(const PolytopeDifference& difference, co
     const Vec3 next = corner(v);
     const Vec3 side = next - last;
     const double left = inwards.dot(side.cross(projection - last));
-    least = std::min(least, left * std::abs(left) / side.squaredNorm());
+    const double squared = side.squaredNorm();
+    // Corners that round to one point have no side between them: nothing is known.
+    if (!(squared > 0)) return std::nullopt;
+    least = std::min(least, left * std::abs(left) / squared);
     last = next;
   }
   if (least < -slack * slack) return std::nullopt;

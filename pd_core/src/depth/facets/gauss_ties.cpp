@@ -86,7 +86,8 @@ class Ties {
     if (!inside) return 0;
     // Rounding counts for more by how long the sides are over the piece's least width.
     const double sharpness = 1 + slenderness(holder);
-    return std::min(kSmallTurn, (*inside - foot_rounding(difference_) * sharpness * sharpness) / height);
+    // In this order a NaN stays one, and the piece is refused.
+    return std::min((*inside - foot_rounding(difference_) * sharpness * sharpness) / height, kSmallTurn);
   }
   /// Bounds the lengths of a piece's sides over its least width.
   [[nodiscard]] double slenderness(const NearFacets& piece) const {

@@ -97,6 +97,10 @@ class CoreInterval {
     }
     if (dimension_a == 0 && dimension_b == 0) look_along(Vec3::UnitX());
   }
+  /// Edges that round to nothing have no direction across them.
+  void look_along_axes_if_unbounded() {
+    for (int k = 0; k < 3 && !std::isfinite(lower); ++k) look_along(Vec3::Unit(k));
+  }
 
  private:
   /// The normal of a polygon, the direction of a segment, 0 of a point; in the caller's axes. From edges as posed:
@@ -157,6 +161,7 @@ void answer_near_boundary(PolytopeQuery& query, const ExpansionResult& surface, 
     cores.bound_below(least.upper, least.normal);
   }
   if (!narrow()) cores.look_across_flat_bodies();
+  cores.look_along_axes_if_unbounded();
   cores.lower = std::min(cores.lower, nearest.upper);
   out.normal = cores.normal;
   set_contact_along(query.pair, nearest, limit, out);

@@ -162,6 +162,7 @@ class SmoothQuery {
     if (!warm_ || warm_->state().smooth.count == 0) return false;
     WarmSmoothPoints& last = warm_->state().smooth;
     const int count = std::exchange(last.count, 0);
+    if (last.taken_out != taken_out_) return false;
     if (!same_core(*last.a, *a_.shape) || !same_core(*last.b, *b_.shape)) return false;
     DifferenceVertex start[3];
     for (int i = 0; i < count; ++i) start[i] = difference_.vertex(last.on_a[i], last.on_b[i]);
@@ -185,6 +186,7 @@ class SmoothQuery {
     if (!memory.a || !same_core(*memory.a, *a_.shape)) memory.a = *a_.shape;
     if (!memory.b || !same_core(*memory.b, *b_.shape)) memory.b = *b_.shape;
     memory.count = nearest.count;
+    memory.taken_out = taken_out_;
     for (int i = 0; i < nearest.count; ++i) {
       memory.on_a[i] = difference_.points(nearest.simplex[i]).local_a;
       memory.on_b[i] = difference_.points(nearest.simplex[i]).local_b;
