@@ -88,8 +88,7 @@ void ContactAlgorithm::processCollision(const btCollisionObjectWrapper* a, const
   auto buffers = core.buffers.lease();
   FreshPoints fresh;
   PairAnswer* answer = nullptr;  // the buffers' own, since making it costs more than boxes take to be compared
-  // An algorithm that is used for the first time may belong to a query between two steps, whose shapes nobody compared.
-  const std::uint64_t stamp = first ? 0 : world_.stamp();
+  const std::uint64_t stamp = world_.stamp(info, first);
   const auto asked_reach = static_cast<double>(threshold);
   const double contact_reach = std::min(asked_reach, static_cast<double>(manifold.getContactBreakingThreshold()));
   const bool asked_for_more = contact_reach < asked_reach;

@@ -23,8 +23,8 @@ void PlaneAlgorithm::getAllContactManifolds(btManifoldArray& manifolds) {
   bullets_->append_to(manifolds);
 }
 
-bool PlaneAlgorithm::find(const btCollisionObjectWrapper& body, const btCollisionObjectWrapper& plane, bool first,
-                          btManifoldResult& result, FreshPoints& fresh) {
+bool PlaneAlgorithm::find(const btCollisionObjectWrapper& body, const btCollisionObjectWrapper& plane,
+                          std::uint64_t stamp, btManifoldResult& result, FreshPoints& fresh) {
   SolverCore& core = world_.core();
   if (core.closed()) return false;
   if (!is_finite(plane.getWorldTransform())) return true;
@@ -36,11 +36,10 @@ bool PlaneAlgorithm::find(const btCollisionObjectWrapper& body, const btCollisio
   const bool touched = memory != nullptr && memory->num_points > 0;
   if (!touched && box_above(convex, body.getWorldTransform(), ground, threshold)) return true;
   auto buffers = core.buffers.lease();
-  // What is used for the first time may belong to a query between two steps, whose shapes nobody compared.
   const GroundQuestion asked{.body = convex,
                              .pose = body.getWorldTransform(),
                              .ground = ground,
-                             .stamp = first ? 0 : world_.stamp(),
+                             .stamp = stamp,
                              .shape = memory != nullptr ? memory->shapes[0] : buffers->recent[0],
                              .threshold = threshold,
                              .sharp_box = true};
@@ -57,7 +56,7 @@ void PlaneAlgorithm::processCollision(const btCollisionObjectWrapper* a, const b
   const bool first = manifold_.take(body, plane, *result);
   result->setPersistentManifold(&manifold_.get());
   FreshPoints fresh;
-  if (find(body, plane, first, *result, fresh)) {
+  if (find(body, plane, world_.stamp(info, first), *result, fresh)) {
     bullets_->release();
     manifold_.replace(fresh, time_of(info), *result);
     return;

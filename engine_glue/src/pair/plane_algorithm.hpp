@@ -28,7 +28,7 @@ class PlaneAlgorithm final : public AlgorithmShell {
 
  private:
   /// @return false: Bullet's algorithm is to answer
-  bool find(const btCollisionObjectWrapper& body, const btCollisionObjectWrapper& plane, bool first,
+  bool find(const btCollisionObjectWrapper& body, const btCollisionObjectWrapper& plane, std::uint64_t stamp,
             btManifoldResult& result, FreshPoints& fresh);
 
   const SolverInWorld& world_;

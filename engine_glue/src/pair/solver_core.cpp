@@ -150,17 +150,16 @@ void SolverCore::warn(const btConvexShape& shape, const Error& refusal) {
   settings.warning(line.c_str(), settings.user);
 }
 
-bool SolverCore::calc_pen_depth(std::uint64_t stamp, btSimplexSolverInterface& simplex, const btConvexShape* a,
-                                const btConvexShape* b, const btTransform& pose_a, const btTransform& pose_b,
-                                btVector3& v, btVector3& witness_a, btVector3& witness_b, btIDebugDraw* draw) {
+bool SolverCore::calc_pen_depth(btSimplexSolverInterface& simplex, const btConvexShape* a, const btConvexShape* b,
+                                const btTransform& pose_a, const btTransform& pose_b, btVector3& v,
+                                btVector3& witness_a, btVector3& witness_b, btIDebugDraw* draw) {
   if (closed()) {
     return epa_.calcPenDepth(simplex, a, b, pose_a, pose_b, v, witness_a, witness_b, draw);
   }
   auto held = buffers.lease();
   PairAnswer found;
   // Rounded corners: Bullet's detector takes its cores and adds the margins itself.
-  const PairQuestion question{
-      .a = *a, .pose_a = pose_a, .b = *b, .pose_b = pose_b, .shapes = held->recent, .stamp = stamp};
+  const PairQuestion question{.a = *a, .pose_a = pose_a, .b = *b, .pose_b = pose_b, .shapes = held->recent};
   switch (answer(question, *held, found)) {
     case Outcome::answered:
       break;
@@ -199,16 +198,6 @@ SolverInWorld& SolverCore::add_world(std::size_t place, std::unique_ptr<SolverIn
   installed_ = true;
   if (!worlds_[place]) worlds_[place] = std::move(world);
   return *worlds_[place];
-}
-
-void SolverCore::note_lone(const btCollisionDispatcher* dispatcher) {
-  const std::lock_guard lock(mutex_);
-  lone_dispatchers_.insert(dispatcher);
-}
-
-bool SolverCore::forget_lone(const btCollisionDispatcher* dispatcher) {
-  const std::lock_guard lock(mutex_);
-  return lone_dispatchers_.erase(dispatcher) > 0;
 }
 
 void SolverCore::close() {

@@ -11,7 +11,6 @@
 #include <limits>
 #include <memory>
 #include <mutex>
-#include <unordered_set>
 
 #include "pair/pair_registry.hpp"
 #include "pair/thread_buffers.hpp"
@@ -21,8 +20,6 @@
 #include "shapes/flat_compound.hpp"
 #include "shapes/pair_answer.hpp"
 #include "shapes/step_shapes.hpp"
-
-class btCollisionDispatcher;
 
 namespace pd::detail {
 
@@ -96,10 +93,10 @@ class SolverCore {
   CachedShape& find(const btConvexShape& shape, std::uint64_t stamp, std::shared_ptr<CachedShape>& known,
                     ThreadBuffers& buffers);
 
-  /// Bullet's call with a step's stamp.
-  bool calc_pen_depth(std::uint64_t stamp, btSimplexSolverInterface& simplex, const btConvexShape* a,
-                      const btConvexShape* b, const btTransform& pose_a, const btTransform& pose_b, btVector3& v,
-                      btVector3& witness_a, btVector3& witness_b, btIDebugDraw* draw);
+  /// Bullet's call.
+  bool calc_pen_depth(btSimplexSolverInterface& simplex, const btConvexShape* a, const btConvexShape* b,
+                      const btTransform& pose_a, const btTransform& pose_b, btVector3& v, btVector3& witness_a,
+                      btVector3& witness_b, btIDebugDraw* draw);
 
   /// The solver for shapes without exact form.
   [[nodiscard]] btConvexPenetrationDepthSolver& fallback() { return settings.fallback ? *settings.fallback : epa_; }
@@ -120,10 +117,6 @@ class SolverCore {
   SolverInWorld* world_at(std::size_t place);
   /// Keeps it as long as the core lives. @return the one that is there, which another thread may have added first
   SolverInWorld& add_world(std::size_t place, std::unique_ptr<SolverInWorld> world);
-  /// Notes a dispatcher without a world that steps, in which the solver is installed.
-  void note_lone(const btCollisionDispatcher* dispatcher);
-  /// @return whether it was noted
-  bool forget_lone(const btCollisionDispatcher* dispatcher);
   [[nodiscard]] bool installed() const { return installed_; }
 
   /// The solver is gone: from now on Bullet's EPA answers.
@@ -150,7 +143,6 @@ class SolverCore {
   std::atomic<bool> closed_{false};
   std::mutex mutex_;
   std::array<std::unique_ptr<SolverInWorld>, kWorlds> worlds_;
-  std::unordered_set<const btCollisionDispatcher*> lone_dispatchers_;
   bool installed_ = false;
 };
 

@@ -4,6 +4,7 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionCreateFunc.h>
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+#include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
 
 #include <atomic>
 #include <cstdint>
@@ -25,9 +26,16 @@ class SolverInWorld {
   SolverInWorld& operator=(const SolverInWorld&) = delete;
 
   [[nodiscard]] SolverCore& core() const { return core_; }
-  /// Of the present step; 0 until a world has made its first step. Where worlds share this, a step of one of them ends
-  /// the stamp of all: shapes are compared more often than needed then, and never less.
-  [[nodiscard]] std::uint64_t stamp() const { return stamp_.load(std::memory_order_relaxed); }
+  /// The stamp under which an algorithm compares shapes: that of the present step, or 0 (nobody compared them) outside
+  /// of steps, in a world that has not stepped, and for an algorithm at its `first` question, which may be a query of
+  /// the host. Where worlds share this, a step of one of them ends the stamp of all: shapes are compared more often
+  /// than needed then, and never less.
+  [[nodiscard]] std::uint64_t stamp(const btDispatcherInfo& info, bool first) const {
+    return first || info.m_stepCount != 0 ? 0 : stamp_.load(std::memory_order_relaxed);
+  }
+  /// Marks a world as between two steps. Hosts detect and query there as often as they like, and change shapes
+  /// meanwhile. Bullet sets this number of its own to 0 when a step begins, and never reads it.
+  static void mark_between_steps(btCollisionWorld& world) { world.getDispatchInfo().m_stepCount = 1; }
 
   /// True if the host leaves the pair to us (`BulletSolverSettings::takes_pair`).
   [[nodiscard]] bool takes(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b) const;

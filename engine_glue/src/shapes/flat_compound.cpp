@@ -24,6 +24,17 @@ bool for_each_leaf_child(const btCompoundShape& compound, const btTransform& pla
   return true;
 }
 
+/// True if the children that are no compounds are those of a flat compound from `next` on, by their addresses.
+bool same_children(const btCompoundShape& holder, const btCompoundShape& flat, int& next) {
+  for (int i = 0; i < holder.getNumChildShapes(); ++i) {
+    const btCollisionShape* const child = holder.getChildShape(i);
+    const bool same = child->isCompound() ? same_children(static_cast<const btCompoundShape&>(*child), flat, next)
+                                          : next < flat.getNumChildShapes() && flat.getChildShape(next++) == child;
+    if (!same) return false;
+  }
+  return true;
+}
+
 bool holds_compounds(const btCompoundShape& compound) {
   for (int i = 0; i < compound.getNumChildShapes(); ++i) {
     if (compound.getChildShape(i)->isCompound()) return true;
@@ -46,9 +57,12 @@ FlatCompound::FlatCompound(const btCompoundShape& source) : source_(&source) {
 
 bool FlatCompound::is_of(const btCompoundShape& source, std::uint64_t stamp) const {
   if (source_ != &source) return false;
-  if (stamp != 0 && compared_.load(std::memory_order_relaxed) == stamp) return true;
   const int count = getNumChildShapes();
   int next = 0;
+  if (stamp != 0 && compared_.load(std::memory_order_relaxed) == stamp) {
+    // A child that the source has lost within the step may be freed.
+    return same_children(source, *this, next) && next == count;
+  }
   const bool same = for_each_leaf_child(
       source, btTransform::getIdentity(), [&](const btCollisionShape& child, const btTransform& place, int number) {
         if (next == count || getChildShape(next) != &child || !(getChildTransform(next) == place) ||

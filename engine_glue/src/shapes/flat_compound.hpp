@@ -22,8 +22,8 @@ class FlatCompound final : public btCompoundShape {
  public:
   explicit FlatCompound(const btCompoundShape& source);
 
-  /// True if the source still has these children in these places. Compares once a step: `stamp` as in
-  /// `BulletShapeCache::find`. Requires the address of a living compound.
+  /// True if the source still has these children in these places. Places and boxes are compared once a step: `stamp` as
+  /// in `BulletShapeCache::find`. Addresses are compared each time. Requires the address of a living compound.
   [[nodiscard]] bool is_of(const btCompoundShape& source, std::uint64_t stamp) const;
   /// Returns the number that a child has in the compound that holds it, which is what Bullet tells hosts.
   [[nodiscard]] int number_in_its_compound(int child) const { return numbers_[static_cast<std::size_t>(child)]; }

@@ -170,10 +170,10 @@ void UnionAlgorithm::processCollision(const btCollisionObjectWrapper* a, const b
   btPersistentManifold& first = s.manifolds.first(*one.getCollisionObject(), *other.getCollisionObject());
   result->setPersistentManifold(&first);
   if (!s.world.core().closed()) {
-    // An algorithm that is used for the first time may belong to a query between two steps, whose shapes nobody
-    // compared: a stamp of its own has each of them compared once.
+    // Where nobody compared the shapes, a stamp of its own has each of them compared once.
     SolverCore& core = s.world.core();
-    const std::uint64_t stamp = std::exchange(s.used, true) ? s.world.stamp() : core.next_stamp();
+    const std::uint64_t of_step = s.world.stamp(info, !std::exchange(s.used, true));
+    const std::uint64_t stamp = of_step != 0 ? of_step : core.next_stamp();
     const btScalar threshold = first.getContactBreakingThreshold() + result->m_closestPointDistanceThreshold;
     const FlatWrapper flat_one(one, core.flat_compounds, stamp, s.flat[0]);
     const FlatWrapper flat_other(other, core.flat_compounds, stamp, s.flat[1]);

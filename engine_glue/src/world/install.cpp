@@ -95,18 +95,35 @@ class ActionsOfWorld : private btDiscreteDynamicsWorld {
  public:
   ActionsOfWorld() = delete;
 
-  static bool has(btDiscreteDynamicsWorld& world, btActionInterface* action) {
-    const btAlignedObjectArray<btActionInterface*>& actions = world.*(&ActionsOfWorld::m_actions);
-    return actions.findLinearSearch(action) < actions.size();
+  /// Takes out those of all solvers.
+  static void remove_ours(btDiscreteDynamicsWorld& world) {
+    btAlignedObjectArray<btActionInterface*>& actions = world.*(&ActionsOfWorld::m_actions);
+    for (int i = actions.size() - 1; i >= 0; --i) {
+      if (auto* const ours = dynamic_cast<detail::Installation*>(actions[i])) world.removeAction(ours);
+    }
+  }
+};
+
+/// The same of a dispatcher's tables.
+class TablesOfDispatcher : private btCollisionDispatcher {
+ public:
+  TablesOfDispatcher() = delete;
+
+  /// True if a pair of convex shapes still gets its algorithm from the installation.
+  static bool point_to(const btCollisionDispatcher& dispatcher, const detail::Installation& installation) {
+    const auto& table = dispatcher.*(&TablesOfDispatcher::m_doubleDispatchContactPoints);
+    bool found = false;
+    for_each_convex_pair([&](int i, int j) {
+      found = found || table[i][j] == &installation.contacts || table[i][j] == &installation.persistent;
+    });
+    return found;
   }
 };
 
 }  // namespace
 
 void install(btCollisionDispatcher& dispatcher, BulletPenetrationDepthSolver& solver, BulletContacts contacts) {
-  detail::SolverCore& core = solver.core();
-  take_tables(dispatcher, &detail::Installation::of_others(core), contacts);
-  core.note_lone(&dispatcher);
+  take_tables(dispatcher, &detail::Installation::of_others(solver.core()), contacts);
 }
 
 bool install(btCollisionWorld& world, BulletPenetrationDepthSolver& solver, BulletContacts contacts) {
@@ -115,9 +132,9 @@ bool install(btCollisionWorld& world, BulletPenetrationDepthSolver& solver, Bull
   if (auto* dynamics = dynamic_cast<btDiscreteDynamicsWorld*>(&world)) {
     detail::Installation& installation = detail::Installation::of_world(solver.core(), dispatcher);
     take_tables(*dispatcher, &installation, contacts);
-    dynamics->removeAction(&installation);  // of an earlier installation, if there was one
+    ActionsOfWorld::remove_ours(*dynamics);  // of an earlier installation, if there was one
     dynamics->addAction(&installation);
-    solver.core().forget_lone(dispatcher);
+    detail::SolverInWorld::mark_between_steps(world);
   } else {
     install(*dispatcher, solver, contacts);
   }
@@ -129,13 +146,12 @@ bool uninstall(btCollisionWorld& world, BulletPenetrationDepthSolver& solver) {
   auto* dispatcher = dynamic_cast<btCollisionDispatcher*>(world.getDispatcher());
   if (dispatcher == nullptr) return false;
   detail::SolverCore& core = solver.core();
-  bool installed = core.forget_lone(dispatcher);
-  if (auto* dynamics = dynamic_cast<btDiscreteDynamicsWorld*>(&world); dynamics != nullptr && core.installed()) {
-    btActionInterface* const action = &detail::Installation::of_world(core, dispatcher);
-    installed = ActionsOfWorld::has(*dynamics, action) || installed;
-    dynamics->removeAction(action);
+  if (!core.installed()) return false;
+  if (!TablesOfDispatcher::point_to(*dispatcher, detail::Installation::of_world(core, dispatcher)) &&
+      !TablesOfDispatcher::point_to(*dispatcher, detail::Installation::of_others(core))) {
+    return false;
   }
-  if (!installed) return false;
+  if (auto* dynamics = dynamic_cast<btDiscreteDynamicsWorld*>(&world)) ActionsOfWorld::remove_ours(*dynamics);
   take_tables(*dispatcher, nullptr, BulletContacts::one_shot);
   renew_pairs(world);
   return true;

@@ -49,11 +49,12 @@ Installation& Installation::at(SolverCore& core, std::size_t place) {
 bool Installation::calcPenDepth(btSimplexSolverInterface& simplex, const btConvexShape* a, const btConvexShape* b,
                                 const btTransform& pose_a, const btTransform& pose_b, btVector3& v,
                                 btVector3& witness_a, btVector3& witness_b, btIDebugDraw* draw) {
-  return core().calc_pen_depth(stamp(), simplex, a, b, pose_a, pose_b, v, witness_a, witness_b, draw);
+  return core().calc_pen_depth(simplex, a, b, pose_a, pose_b, v, witness_a, witness_b, draw);
 }
 
 void Installation::updateAction(btCollisionWorld* world, btScalar step) {
   begin_step();
+  mark_between_steps(*world);
   // `install` adds the action to such worlds only.
   if (!core().closed()) carry_heavy_loads(static_cast<btDiscreteDynamicsWorld&>(*world), core(), step);
 }

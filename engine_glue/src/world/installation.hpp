@@ -33,7 +33,7 @@ class Installation final : public SolverInWorld, public btConvexPenetrationDepth
   CreateFuncOf<CompoundQuery> compound_query;         ///< the same for the table of closest points
   btConvexConvexAlgorithm::CreateFunc persistent;     ///< Bullet's, which asks this depth solver
 
-  /// Asks the core with this world's stamp.
+  /// Asks the core. Bullet does not tell here if the world is in a step, so that all points are compared.
   bool calcPenDepth(btSimplexSolverInterface& simplex, const btConvexShape* a, const btConvexShape* b,
                     const btTransform& pose_a, const btTransform& pose_b, btVector3& v, btVector3& witness_a,
                     btVector3& witness_b, btIDebugDraw* draw) override;

@@ -94,7 +94,7 @@ bool BulletPenetrationDepthSolver::calcPenDepth(btSimplexSolverInterface& simple
                                                 const btConvexShape* b, const btTransform& transform_a,
                                                 const btTransform& transform_b, btVector3& v, btVector3& witness_a,
                                                 btVector3& witness_b, btIDebugDraw* debug_draw) {
-  return core_->calc_pen_depth(0, simplex_solver, a, b, transform_a, transform_b, v, witness_a, witness_b, debug_draw);
+  return core_->calc_pen_depth(simplex_solver, a, b, transform_a, transform_b, v, witness_a, witness_b, debug_draw);
 }
 
 BulletSolverStatistics BulletPenetrationDepthSolver::statistics() const {

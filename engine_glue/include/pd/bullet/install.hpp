@@ -48,7 +48,9 @@ enum class BulletContacts {
 /// `pd::check_mesh` (mesh_check.hpp) finds them, and what Bullet would read past, beforehand.
 ///
 /// A world that steps (btDynamicsWorld) gets an action (`addAction`) that tells the solver when a step has ended;
-/// shapes are compared with what they were converted from once a step (shape_cache.hpp).
+/// shapes are compared with what they were converted from once a step (shape_cache.hpp). The action takes
+/// `btDispatcherInfo::m_stepCount`, which Bullet sets to 0 in each step and never reads, to mark the time between
+/// steps. A solver that was installed before gives way to this one.
 ///
 /// Requires that the world is not stepping. Time O(pairs) in the world's pairs that overlap.
 /// @return false, and nothing changed, if the world's dispatcher is not a btCollisionDispatcher.

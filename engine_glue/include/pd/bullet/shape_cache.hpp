@@ -12,8 +12,9 @@
 ///
 /// In a dynamics world that steps, all points are compared once a step and shape. Further look-ups of the same step
 /// compare what takes no time: type, margin, scaling, sizes, the number of points and where they lie
-/// (`shape_signature`). A point that is moved in place between two steps is so noticed at the next step. Where nobody
-/// tells of steps (a dispatcher without a dynamics world, this class alone) every look-up compares all points.
+/// (`shape_signature`). A point that is moved in place between two steps is so noticed at the next step. Detections and
+/// queries of the host between two steps compare all points, for each pair anew. Where nobody tells of steps (a
+/// dispatcher without a dynamics world, `BulletContacts::persistent`, this class alone) every look-up does.
 #pragma once
 
 #include <atomic>
