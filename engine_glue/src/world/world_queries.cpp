@@ -1,11 +1,15 @@
 #include "pd/bullet/world_queries.hpp"
 
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -39,13 +43,21 @@ struct Piece {
   int index;
 };
 
-/// The pieces of an object that a box of the world meets. @return false where one has no exact body.
+/// Around the shape on its way, and as far as it reaches from there.
+struct Region {
+  Box way;
+  Box reached;
+  double diameter;  ///< of the shape, or more
+};
+
+/// The pieces of an object that a region of the world meets. @return false where one has no exact body.
 class Pieces {
  public:
-  Pieces(const Box& box, BulletShapeCache* cache) : box_(box), cache_(cache) {}
+  Pieces(const Region& region, BulletShapeCache* cache) : region_(region), cache_(cache) {}
 
   bool add(const btCollisionShape& shape, const btTransform& pose, int part, int index, bool outermost) {
-    if (detail::apart(detail::box_of(shape, pose), box_, 0)) return true;
+    const Box box = detail::box_of(shape, pose);
+    if (detail::apart(box, region_.reached, 0)) return true;
     if (shape.isCompound()) {
       const auto& compound = static_cast<const btCompoundShape&>(shape);
       bool all = true;
@@ -55,8 +67,12 @@ class Pieces {
       }
       return all;
     }
+    if (shape.getShapeType() == STATIC_PLANE_PROXYTYPE) {
+      add_plane(static_cast<const btStaticPlaneShape&>(shape), pose);
+      return true;
+    }
     if (shape.isConcave()) {
-      add_triangles(static_cast<const btConcaveShape&>(shape), pose);
+      add_triangles(static_cast<const btConcaveShape&>(shape), pose, box);
       return true;
     }
     if (!shape.isConvex()) return false;
@@ -69,11 +85,16 @@ class Pieces {
   std::vector<Piece> pieces;
 
  private:
-  void add_triangles(const btConcaveShape& shape, const btTransform& pose) {
-    // The box of the box in the shape's frame.
-    const btVector3 middle = pose.invXform(btScalar(0.5) * (box_.lower + box_.upper));
+  /// @param own  the shape's box in the world. A region may be so wide that its middle loses the shape.
+  void add_triangles(const btConcaveShape& shape, const btTransform& pose, const Box& own) {
+    btVector3 lower = region_.reached.lower, upper = region_.reached.upper;
+    lower.setMax(own.lower);
+    upper.setMin(own.upper);
+    // The box of the box in the shape's frame, wider by what these sums are rounded by.
+    const btScalar rounded = 8 * SIMD_EPSILON * std::max({lower.length(), upper.length(), pose.getOrigin().length()});
+    const btVector3 middle = pose.invXform(btScalar(0.5) * (lower + upper));
     const btMatrix3x3 turn = pose.getBasis().transpose().absolute();
-    const btVector3 half = turn * (btScalar(0.5) * (box_.upper - box_.lower));
+    const btVector3 half = turn * (btScalar(0.5) * (upper - lower)) + btVector3(rounded, rounded, rounded);
     for (detail::BoxedTriangle& triangle : detail::triangles_in_box(shape, middle - half, middle + half)) {
       auto body = std::make_shared<detail::CachedShape>();
       body->body = std::move(triangle.shape);
@@ -81,7 +102,30 @@ class Pieces {
     }
   }
 
-  const Box& box_;
+  /// The part of a plane below the way, as one triangle of doubles. Bullet's triangles of floats lie off the plane by a
+  /// share of the box's size.
+  void add_plane(const btStaticPlaneShape& plane, const btTransform& pose) {
+    const Vec3 lower = to_pd(region_.way.lower), upper = to_pd(region_.way.upper);
+    const Pose placed = to_pd(pose);
+    const Vec3 middle = placed.rotation().transpose() * (0.5 * (lower + upper) - placed.translation());
+    const Vec3 normal = to_pd(plane.getPlaneNormal()).normalized();
+    const Vec3 foot = middle - (normal.dot(middle) - static_cast<double>(plane.getPlaneConstant())) * normal;
+    const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u);
+    const Vec3 half = 0.5 * (upper - lower);
+    const auto width = [&](const Vec3& axis) { return (placed.rotation() * axis).cwiseAbs().dot(half); };
+    // No way past an edge is as short as the way out along the normal.
+    const double radius = 4 * (width(u) + width(v) + region_.diameter);
+    const double height = std::sqrt(3.0);
+    const std::array corners{Vec3(foot - radius * u - height * radius * v),
+                             Vec3(foot - radius * u + height * radius * v), Vec3(foot + 2 * radius * u)};
+    auto triangle = ConvexPolytope::from_points(corners);
+    if (!triangle) return;
+    auto body = std::make_shared<detail::CachedShape>();
+    body->body = std::make_shared<const ConvexShape>(std::move(triangle).value());
+    pieces.push_back({std::move(body), pose, 0, 0});
+  }
+
+  const Region& region_;
   BulletShapeCache* cache_;
 };
 
@@ -113,16 +157,37 @@ bool passes(const btBroadphaseProxy& proxy, const WorldQuerySettings& settings) 
          (settings.filter_group & proxy.m_collisionFilterMask) != 0;
 }
 
-/// A box around the shape at both ends of its way, wider by `margin`; boxes of floats are rounded.
+/// The box wider by a margin, which may be infinite; boxes of floats are rounded.
+Box widened(Box box, double margin) {
+  constexpr btScalar kMost = std::numeric_limits<btScalar>::max();
+  const auto grown = static_cast<btScalar>(std::min(margin * 1.001, static_cast<double>(kMost)));
+  box.lower -= btVector3(grown, grown, grown);
+  box.upper += btVector3(grown, grown, grown);
+  return box;
+}
+
+/// A box around the shape at both ends of its way, wider by `margin`.
 Box box_around(const btConvexShape& shape, const btTransform& from, const btTransform& to, double margin) {
   Box box = detail::box_of(shape, from);
   const Box end = detail::box_of(shape, to);
   box.lower.setMin(end.lower);
   box.upper.setMax(end.upper);
-  const auto grown = static_cast<btScalar>(margin * 1.001);
-  box.lower -= btVector3(grown, grown, grown);
-  box.upper += btVector3(grown, grown, grown);
-  return box;
+  return widened(box, margin);
+}
+
+double diameter(const btConvexShape& shape, const btTransform& pose) {
+  const Box box = detail::box_of(shape, pose);
+  return to_pd(box.upper - box.lower).norm();
+}
+
+/// Why a question has no answer, if it has none.
+std::optional<Error> refusal(const btTransform& from, const btTransform& to, const WorldQuerySettings& settings) {
+  if (!is_finite(from)) return Error{ErrorCode::non_finite, "must be finite", "from"};
+  if (!is_finite(to)) return Error{ErrorCode::non_finite, "must be finite", "to"};
+  if (!(settings.tolerance > 0 && std::isfinite(settings.tolerance))) {
+    return Error{ErrorCode::bad_value, "must be > 0 and finite", "settings.tolerance"};
+  }
+  return std::nullopt;
 }
 
 /// A shape on its way through the world.
@@ -178,15 +243,17 @@ struct Sweep {
 /// @param answer   void(const SweepHit&).
 template <class Needs, class Limit, class Answer>
 Expected<int> ask(const Sweep& sweep, const Needs& needs, const Limit& limit, const Answer& answer) {
+  if (const auto refused = refusal(sweep.from, sweep.to, sweep.settings)) return *refused;
   const Expected<Body> body = convert(sweep.shape, sweep.settings.cache);
   if (!body) return body.error();
   Cast cast(*body, sweep.from, sweep.to, sweep.settings.tolerance);
   const Box box = box_around(sweep.shape, sweep.from, sweep.to, cast.bulge() + sweep.settings.tolerance);
+  const Region region{box, box, diameter(sweep.shape, sweep.from)};
   int unanswered = 0;
   const std::function<void(btBroadphaseProxy&)> visit = [&](btBroadphaseProxy& proxy) {
     const auto& object = *static_cast<const btCollisionObject*>(proxy.m_clientObject);
     if (!needs(proxy)) return;
-    Pieces found(box, sweep.settings.cache);
+    Pieces found(region, sweep.settings.cache);
     if (!found.add(*object.getCollisionShape(), object.getWorldTransform(), -1, -1, true)) ++unanswered;
     const auto hit = cast.first_hit(object, found.pieces, std::min(1.0, limit()));
     if (hit) answer(*hit);
@@ -226,16 +293,22 @@ Expected<int> sweep_test(btCollisionWorld& world, const btConvexShape& shape, co
 
 Expected<DistanceResult> distance_test(btCollisionWorld& world, const btConvexShape& shape, const btTransform& pose,
                                        double reach, const WorldQuerySettings& settings) {
+  if (auto refused = refusal(pose, pose, settings)) {
+    if (refused->where == "from") refused->where = "pose";
+    return *refused;
+  }
+  if (!(reach >= 0)) return Error{ErrorCode::bad_value, "must be >= 0", "reach"};
   const Expected<Body> body = convert(shape, settings.cache);
   if (!body) return body.error();
-  const Box box = box_around(shape, pose, pose, reach + settings.tolerance);
+  const Box way = box_around(shape, pose, pose, settings.tolerance);
+  const Region region{way, widened(way, reach), diameter(shape, pose)};
   DistanceResult result;
   Scratch scratch;
   double least = reach;
   const std::function<void(btBroadphaseProxy&)> visit = [&](btBroadphaseProxy& proxy) {
     const auto& object = *static_cast<const btCollisionObject*>(proxy.m_clientObject);
     if (!passes(proxy, settings)) return;
-    Pieces found(box, settings.cache);
+    Pieces found(region, settings.cache);
     if (!found.add(*object.getCollisionShape(), object.getWorldTransform(), -1, -1, true)) ++result.unanswered;
     for (const Piece& piece : found.pieces) {
       const PenetrationDepth answer = penetration_depth({&(*body)->beside(*piece.body), to_pd(pose)},
@@ -248,7 +321,7 @@ Expected<DistanceResult> distance_test(btCollisionWorld& world, const btConvexSh
     }
   };
   Neighbours neighbours(visit);
-  world.getBroadphase()->aabbTest(box.lower, box.upper, neighbours);
+  world.getBroadphase()->aabbTest(region.reached.lower, region.reached.upper, neighbours);
   return result;
 }
 

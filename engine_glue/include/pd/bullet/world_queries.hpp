@@ -18,7 +18,7 @@ struct WorldQuerySettings {
   /// Bullet's rule for callbacks: an object is asked if its group is in this mask and this group in its mask.
   int filter_group = btBroadphaseProxy::DefaultFilter;
   int filter_mask = btBroadphaseProxy::AllFilter;
-  /// The gap that a cast may leave before a hit, > 0.
+  /// The gap that a cast may leave before a hit, > 0 and finite.
   double tolerance = 1e-6;
   /// Keeps converted shapes (`BulletPenetrationDepthSolver::cache()`); nullptr: converted at each call.
   BulletShapeCache* cache = nullptr;
@@ -57,9 +57,10 @@ struct DistanceResult {
 /// The first object that `shape` meets on the straight way from `from` to `to`, turning at constant speed about its
 /// origin by the shorter turn. Objects stand still at their world transforms; the broadphase must be up to date
 /// (`updateAabbs`, or a step), as for Bullet's own queries. Objects without contact response are asked, too.
-/// @return an error where `shape` has no exact body; hits with points, normal and distance as of `SweepHit`.
-/// Time: a time of impact (`pd/contact/time_of_impact.hpp`, whose proof this is) for each convex piece, and for each
-/// triangle of a mesh, that meets the box of the whole way. Without a cache each is converted, too.
+/// @return an error where `shape` has no exact body, a transform is not finite (`non_finite`) or a setting is out of
+/// its range (`bad_value`); hits with points, normal and distance as of `SweepHit`. Time: a time of impact
+/// (`pd/contact/time_of_impact.hpp`, whose proof this is) for each convex piece, and for each triangle of a mesh, that
+/// meets the box of the whole way. Without a cache each is converted, too.
 [[nodiscard]] Expected<SweepResult> sweep_test(btCollisionWorld& world, const btConvexShape& shape,
                                                const btTransform& from, const btTransform& to,
                                                const WorldQuerySettings& settings = {});
@@ -67,15 +68,15 @@ struct DistanceResult {
 /// Sweeps for Bullet's callbacks, with `convexSweepTest`'s contract: `callback.needsCollision` decides who is asked
 /// (its filters by default), and `addSingleResult` gets each object's first hit below `m_closestHitFraction`, normal in
 /// the world. The settings' filters are not used.
-/// @return how many objects are unanswered.
+/// @return how many objects are unanswered; errors as above.
 Expected<int> sweep_test(btCollisionWorld& world, const btConvexShape& shape, const btTransform& from,
                          const btTransform& to, btCollisionWorld::ConvexResultCallback& callback,
                          const WorldQuerySettings& settings = {});
 
 /// The object that is nearest to `shape` at `pose` (or overlaps it deepest), if one is within `reach` >= 0, with the
 /// closest points.
-/// @param reach  in the world's unit.
-/// @return an error where `shape` has no exact body.
+/// @param reach  in the world's unit; it may be infinite.
+/// @return an error as above, or where `reach` is below 0 or NaN (`bad_value`).
 /// Time: an exact query (`penetration_depth`, tightest bracket) for each convex piece within reach.
 [[nodiscard]] Expected<DistanceResult> distance_test(btCollisionWorld& world, const btConvexShape& shape,
                                                      const btTransform& pose, double reach,
