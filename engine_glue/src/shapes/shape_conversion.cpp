@@ -35,8 +35,13 @@ namespace {
 /// more than a frame (about 0.1 s).
 constexpr std::size_t kMaxSumPairs = 65536;
 
-Error unsupported(const btConvexShape& shape, std::string message) {
-  return {ErrorCode::unsupported, std::move(message), shape.getName()};
+Error unsupported(std::string message) { return {ErrorCode::unsupported, std::move(message), {}}; }
+
+/// A refusal that names the Bullet type.
+Expected<ConvexShape> named(Expected<ConvexShape> form, const btConvexShape& shape) {
+  if (form) return form;
+  const Error& refusal = form.error();
+  return Error{refusal.code, refusal.message, shape.getName() + (refusal.where.empty() ? "" : "." + refusal.where)};
 }
 
 /// Hands every triangle corner of a mesh to `visit`.
@@ -143,17 +148,10 @@ double margin_around_core(const btConvexShape& shape) {
   return static_cast<double>(inside_margin(static_cast<const btConvexInternalShape&>(shape)).margin);
 }
 
-Expected<ConvexShape> swept_hull(const btConvexShape& shape, const std::vector<Vec3>& points, double margin) {
+Expected<ConvexShape> swept_hull(const std::vector<Vec3>& points, double margin) {
   auto polytope = ConvexPolytope::from_points(points);
-  if (!polytope) {
-    return Error{polytope.error().code, polytope.error().message,
-                 std::string(shape.getName()) + "." + polytope.error().where};
-  }
+  if (!polytope) return polytope.error();
   return ConvexShape(std::move(polytope).value()).with_margin(margin);
-}
-
-Expected<ConvexShape> with_bullet_margin(Expected<ConvexShape> core, const btConvexShape& shape) {
-  return core ? core->with_margin(bullet_margin(shape)) : core;
 }
 
 Expected<ConvexShape> from_cylinder(const btCylinderShape& shape) {
@@ -163,12 +161,12 @@ Expected<ConvexShape> from_cylinder(const btCylinderShape& shape) {
   const auto half_height = static_cast<double>(inside.half_extents[axis]);
   const auto margin = static_cast<double>(inside.margin);
   if (half_height <= 0) {
-    return unsupported(shape, "a cylinder without height has no exact form: give it a half height above zero");
+    return unsupported("a cylinder without height has no exact form: give it a half height above zero");
   }
   if (radius <= 0) {
     Vec3 end = Vec3::Zero();
     end[axis] = half_height;
-    return swept_hull(shape, {-end, end}, margin);
+    return swept_hull({-end, end}, margin);
   }
   const auto core = ConvexShape::cylinder(radius, half_height, axis);
   return core ? core->with_margin(margin) : core;
@@ -177,24 +175,29 @@ Expected<ConvexShape> from_cylinder(const btCylinderShape& shape) {
 Expected<ConvexShape> from_capsule(const btCapsuleShape& shape) {
   Vec3 end = Vec3::Zero();
   end[shape.getUpAxis()] = static_cast<double>(shape.getHalfHeight());
-  return swept_hull(shape, {-end, end}, bullet_margin(shape));
+  return swept_hull({-end, end}, bullet_margin(shape));
 }
 
 Expected<ConvexShape> from_multisphere(const btMultiSphereShape& shape) {
   const btVector3& scaling = shape.getLocalScaling();
   if (scaling.x() != scaling.y() || scaling.x() != scaling.z()) {
-    return unsupported(shape, "a multisphere scaled differently along its axes has no exact form: scale it uniformly");
+    return unsupported("a multisphere scaled differently along its axes has no exact form: scale it uniformly");
   }
   std::vector<Sphere> spheres;
   for (int i = 0; i < shape.getSphereCount(); ++i) {
     spheres.push_back(
         {to_pd(shape.getSpherePosition(i) * scaling), static_cast<double>(shape.getSphereRadius(i) * scaling.x())});
   }
-  auto hull = ConvexShape::hull_of_spheres(spheres);
-  if (!hull) {
-    return Error{hull.error().code, hull.error().message, std::string(shape.getName()) + "." + hull.error().where};
+  return ConvexShape::hull_of_spheres(spheres);
+}
+
+Expected<ConvexShape> from_cone(const btConeShape& shape) {
+  const auto radius = static_cast<double>(shape.getRadius()), height = static_cast<double>(shape.getHeight());
+  if (radius <= 0 || height <= 0) {
+    return unsupported("a cone without radius or height has no exact form: give it both above zero");
   }
-  return hull;
+  const auto core = ConvexShape::cone(radius, 0.5 * height, shape.getConeUpIndex());
+  return core ? core->with_margin(bullet_margin(shape)) : core;
 }
 
 Expected<ConvexShape> from_uniform_scaling(const btUniformScalingShape& shape) {
@@ -208,7 +211,7 @@ Expected<ConvexShape> from_uniform_scaling(const btUniformScalingShape& shape) {
     for (int v = 0; v < polytope->num_vertices(); ++v) {
       points.push_back(factor * polytope->vertex(v));
     }
-    return swept_hull(shape, points, factor * child->margin());
+    return swept_hull(points, factor * child->margin());
   }
   const auto scaled = [&]() -> Expected<ConvexShape> {
     if (const auto* cylinder = std::get_if<Cylinder>(&child->core())) {
@@ -222,7 +225,7 @@ Expected<ConvexShape> from_uniform_scaling(const btUniformScalingShape& shape) {
       for (const Sphere& s : hull->spheres()) spheres.push_back({factor * s.centre, factor * s.radius});
       return ConvexShape::hull_of_spheres(spheres);
     }
-    return unsupported(shape, "a uniform scaling shape of this child has no exact form");
+    return unsupported("a uniform scaling shape of this child has no exact form");
   }();
   return scaled ? scaled->with_margin(factor * child->margin()) : scaled;
 }
@@ -238,12 +241,12 @@ Expected<ConvexShape> from_minkowski_sum(const btMinkowskiSumShape& shape) {
   }
   if (a->polytope() == nullptr || b->polytope() == nullptr) {
     return unsupported(
-        shape, "a Minkowski sum with a smooth core has no exact form: sum polyhedral shapes, spheres or capsules");
+        "a Minkowski sum with a smooth core has no exact form: sum polyhedral shapes, spheres or capsules");
   }
   const std::size_t pairs =
       static_cast<std::size_t>(a->polytope()->num_vertices()) * static_cast<std::size_t>(b->polytope()->num_vertices());
   if (pairs > kMaxSumPairs) {
-    return unsupported(shape, "the Minkowski sum has more than 65,536 vertex pairs: use hulls of fewer vertices");
+    return unsupported("the Minkowski sum has more than 65,536 vertex pairs: use hulls of fewer vertices");
   }
   const Pose pose_a = to_pd(shape.getTransformA());
   const Pose pose_b = to_pd(shape.GetTransformB());
@@ -254,7 +257,7 @@ Expected<ConvexShape> from_minkowski_sum(const btMinkowskiSumShape& shape) {
       points.push_back(pose_a.apply(a->polytope()->vertex(i)) - pose_b.apply(b->polytope()->vertex(j)));
     }
   }
-  return swept_hull(shape, points, a->margin() + b->margin());
+  return swept_hull(points, a->margin() + b->margin());
 }
 
 /// A hash over the bits of everything that the conversion reads.
@@ -280,26 +283,22 @@ class Fingerprint {
                                           detail::MixedBits(0xC2B2AE3D27D4EB4FULL)};
 };
 
-}  // namespace
-
-Expected<ConvexShape> to_convex_shape(const btConvexShape& shape) {
+Expected<ConvexShape> form_of(const btConvexShape& shape) {
+  // Bullet takes margins off the distance of the cores, whatever their sign.
+  if (bullet_margin(shape) < 0) return unsupported("a negative margin has no exact form: give it one of zero or more");
   std::vector<Vec3> points;
   if (for_each_point(shape, [&](const btVector3& point) { points.push_back(to_pd(point)); })) {
-    return swept_hull(shape, points, margin_around_core(shape));
+    return swept_hull(points, margin_around_core(shape));
   }
   switch (shape.getShapeType()) {
     case SPHERE_SHAPE_PROXYTYPE:
-      return swept_hull(shape, {Vec3::Zero()}, bullet_margin(shape));
+      return swept_hull({Vec3::Zero()}, bullet_margin(shape));
     case CAPSULE_SHAPE_PROXYTYPE:
       return from_capsule(static_cast<const btCapsuleShape&>(shape));
     case CYLINDER_SHAPE_PROXYTYPE:
       return from_cylinder(static_cast<const btCylinderShape&>(shape));
-    case CONE_SHAPE_PROXYTYPE: {
-      const auto& cone = static_cast<const btConeShape&>(shape);
-      return with_bullet_margin(ConvexShape::cone(static_cast<double>(cone.getRadius()),
-                                                  0.5 * static_cast<double>(cone.getHeight()), cone.getConeUpIndex()),
-                                shape);
-    }
+    case CONE_SHAPE_PROXYTYPE:
+      return from_cone(static_cast<const btConeShape&>(shape));
     case MULTI_SPHERE_SHAPE_PROXYTYPE:
       return from_multisphere(static_cast<const btMultiSphereShape&>(shape));
     case UNIFORM_SCALING_SHAPE_PROXYTYPE:
@@ -310,9 +309,13 @@ Expected<ConvexShape> to_convex_shape(const btConvexShape& shape) {
     case MINKOWSKI_DIFFERENCE_SHAPE_PROXYTYPE:  // what btMinkowskiSumShape calls itself
       return from_minkowski_sum(static_cast<const btMinkowskiSumShape&>(shape));
     default:
-      return unsupported(shape, "a convex type of the host's own that is not polyhedral has no exact form");
+      return unsupported("a convex type of the host's own that is not polyhedral has no exact form");
   }
 }
+
+}  // namespace
+
+Expected<ConvexShape> to_convex_shape(const btConvexShape& shape) { return named(form_of(shape), shape); }
 
 std::uint64_t shape_fingerprint(const btConvexShape& shape) {
   Fingerprint hash;
@@ -415,7 +418,7 @@ Expected<ConvexShape> to_sharp_box(const btBoxShape& shape) {
   // A box without extent on some axis is a rectangle, a segment or a point.
   std::vector<Vec3> points;
   visit_corners(half, [&](const btVector3& corner) { points.push_back(to_pd(corner)); });
-  return swept_hull(shape, points, 0);
+  return named(swept_hull(points, 0), shape);
 }
 
 }  // namespace pd

@@ -25,7 +25,8 @@
 ///
 /// - a multisphere that is scaled differently along its axes;
 /// - a Minkowski sum with a smooth core, or with more than 65,536 pairs of vertices;
-/// - a cylinder without height;
+/// - a cylinder without height, a cone without height or radius;
+/// - a margin or radius below zero;
 /// - convex types of the host's own that are not polyhedral.
 #pragma once
 
