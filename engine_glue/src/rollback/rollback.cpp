@@ -19,6 +19,15 @@ namespace pd {
 
 namespace {
 
+/// The settings, each number that is outside of its range as by default.
+RollbackSettings in_their_ranges(RollbackSettings chosen) {
+  const RollbackSettings usual;
+  if (!(chosen.gap > 0 && std::isfinite(chosen.gap))) chosen.gap = usual.gap;
+  if (!(chosen.contact_slop >= 0 && std::isfinite(chosen.contact_slop))) chosen.contact_slop = usual.contact_slop;
+  if (!(chosen.least_part >= 0 && chosen.least_part <= 1)) chosen.least_part = usual.least_part;
+  return chosen;
+}
+
 /// Of a point of a body that moves as it does at present, at the pose given.
 Vec3 velocity_at(const btCollisionObject& object, const btTransform& pose, const Vec3& point) {
   const btRigidBody* body = btRigidBody::upcast(&object);
@@ -162,7 +171,7 @@ struct RollbackStepper::State {
 
 RollbackStepper::RollbackStepper(btDiscreteDynamicsWorld& world, BulletPenetrationDepthSolver& solver,
                                  const RollbackSettings& settings)
-    : state_(new State(world, solver, settings)) {}
+    : state_(new State(world, solver, in_their_ranges(settings))) {}
 
 RollbackStepper::~RollbackStepper() { delete state_; }
 
@@ -338,6 +347,7 @@ RollbackReport RollbackStepper::step(btScalar step) {
 }
 
 RollbackReport RollbackStepper::step(btScalar time, int max_steps, btScalar fixed) {
+  if (max_steps == 0) return step(time);
   RollbackReport report;
   btScalar& owed = state_->owed;
   owed += time;

@@ -24,21 +24,22 @@
 
 namespace pd {
 
+/// A number that is outside of its range, or NaN, is taken as the default.
 struct RollbackSettings {
-  /// The gap left at a first contact, > 0, in the world's unit; pairs that Bullet brakes may have 2.25 gaps left.
-  /// Floats cannot place a body finer than about 1e-7 of its coordinates.
+  /// The gap left at a first contact, > 0 and finite, in the world's unit; pairs that Bullet brakes may have 2.25 gaps
+  /// left. Floats cannot place a body finer than about 1e-7 of its coordinates.
   double gap = 1e-5;
-  /// Pairs in contact already may sink by this length before the step is cut there too: after a corner hits, a fast
-  /// body still turns its other corners through the wall. After it, a quarter of it a part. Pairs that move by less in
-  /// a step that nothing cuts are not searched.
+  /// Pairs in contact already may sink by this length, >= 0 and finite, before the step is cut there too: after a
+  /// corner hits, a fast body still turns its other corners through the wall. After it, a quarter of it a part. Pairs
+  /// that move by less in a step that nothing cuts are not searched.
   double contact_slop = 5e-4;
   /// Trials of a shorter step for one contact.
   int max_trials = 24;
   /// Cuts of one step; what is left of the step is then made in one piece (a ball that comes
   /// to rest bounces without end in finite time).
   int max_contacts_per_step = 64;
-  /// The least part of a step, as a share of it: a contact nearer than that is run into, by at most the relative speed
-  /// times that part.
+  /// The least part of a step, as a share of it in [0, 1]: a contact nearer than that is run into, by at most the
+  /// relative speed times that part.
   double least_part = 1.0 / 4096;
   /// True: bodies that no contact and no joint touches in a step, or in a part of it, move by the law of free flight.
   /// They follow the parabola of the forces on them, and turn as a body without torque does. Bullet's own steps are
@@ -106,8 +107,8 @@ class RollbackStepper {
   RollbackReport step(btScalar step);
 
   /// Advances like `stepSimulation(time, max_steps, fixed)`: as many steps of `fixed` seconds as are due, at most
-  /// `max_steps`, and motion states moved on by the remainder, which is kept for the next call. The report sums up all
-  /// steps; times of contacts count from the first.
+  /// `max_steps`, and motion states moved on by the remainder, which is kept for the next call. With 0 for `max_steps`
+  /// it is `step(time)`. The report sums up all steps; times of contacts count from the first.
   RollbackReport step(btScalar time, int max_steps, btScalar fixed);
 
  private:
