@@ -32,12 +32,15 @@ function(pd_add_library target)
   target_include_directories(${target}_internals INTERFACE $<TARGET_PROPERTY:${target},INTERFACE_INCLUDE_DIRECTORIES>)
 endfunction()
 
-# pd_install_component(<target> PC_NAME <name> PC_REQUIRES <modules> DESCRIPTION <text> [PC_LIBS <flags>])
+# pd_install_component(<target> PC_NAME <name> PC_REQUIRES <modules> DESCRIPTION <text> [LANGUAGE <text>] [PC_LIBS <flags>])
 #
 # Static libraries need what they use privately, too: it stands under Requires and Libs, since `pkg-config --libs` without
 # --static has to be enough.
 function(pd_install_component target)
-  cmake_parse_arguments(arg "" "PC_NAME;PC_REQUIRES;PC_LIBS;DESCRIPTION" "" ${ARGN})
+  cmake_parse_arguments(arg "" "PC_NAME;PC_REQUIRES;PC_LIBS;DESCRIPTION;LANGUAGE" "" ${ARGN})
+  if(NOT arg_LANGUAGE)
+    set(arg_LANGUAGE "C++20: compile with -std=c++20")
+  endif()
   get_target_property(component ${target} EXPORT_NAME)
   if(NOT component)
     set(component ${target})
@@ -51,7 +54,7 @@ function(pd_install_component target)
           DESTINATION ${PD_INSTALL_CMAKEDIR} COMPONENT ${component})
 
   pd_install_pkg_config(${arg_PC_NAME} REQUIRES "${arg_PC_REQUIRES}" LIBS "-l${library} ${arg_PC_LIBS}"
-                        DESCRIPTION "${arg_DESCRIPTION} (C++20: compile with -std=c++20)" COMPONENT ${component})
+                        DESCRIPTION "${arg_DESCRIPTION} (${arg_LANGUAGE})" COMPONENT ${component})
 endfunction()
 
 # pd_install_pkg_config(<name> REQUIRES <modules> LIBS <flags> DESCRIPTION <text> COMPONENT <component>)
