@@ -110,6 +110,7 @@ TEST(BetweenSteps, ChildrenOfChildrenMayMove) {
     const Nested nested(floor);
     btRigidBody& body = *floor.w.body(nested.outer, 1, at(0, 0.5, 0));
     floor.w.world().stepSimulation(btScalar(1) / 60, 0);
+    floor.w.world().performDiscreteCollisionDetection();
     for (int round = 1; round <= 3; ++round) {
       nested.inner->updateChildTransform(0, at(0, -0.05 * round, 0));
       nested.outer->recalculateLocalAabb();
