@@ -119,6 +119,14 @@ TEST_F(UnionManifolds, PiecesThatCoverEachOtherLeaveASheetAsOne) {
   }
 }
 
+TEST_F(UnionManifolds, AFarReachMergesNoPoints) {
+  for (const double reach : {0.02, 1.0, 100.0, 1e6}) {
+    SCOPED_TRACE(reach);
+    settings_.breaking_threshold = reach;
+    expect_stands(slab(), 0.3, 1e-4);
+  }
+}
+
 TEST_F(UnionManifolds, CoveredContactsAreCounted) {
   const PieceBody floor = *PieceBody::of_sheet(floor_of_cells().view()), body = box(0.2);
   // The box's side stands 1e-5 beyond an edge of the mesh: of that triangle alone it would leave sideways.

@@ -26,7 +26,7 @@ constexpr int kMostPatches = 8;
 /// One answer asks no more pairs of pieces.
 constexpr std::size_t kMostPiecePairs = std::size_t{1} << 20;
 /// Points are told apart as if the breaking threshold were at least this share of the smaller body's half diagonal, so
-/// that noise is told from depth even at a threshold of 0.
+/// that noise is told from depth even at a threshold of 0, and at most all of it, so that a far reach merges none.
 constexpr double kLeastScale = 0x1p-8;
 /// For bodies of size 1, a threshold or way that is longer than this makes no difference.
 constexpr double kFar = 0x1p64;
@@ -216,7 +216,7 @@ void Asked::choose() {
   if (patches_.empty()) return;
   const auto half_diagonal = [](const TriangleBox& box) { return 0.5 * (box.high - box.low).norm(); };
   const double size = std::min(half_diagonal(a_.whole_box()), half_diagonal(b_.whole_box()));
-  patches_.choose(kMostPatches, std::max(settings_.breaking_threshold, kLeastScale * size), {});
+  patches_.choose(kMostPatches, std::clamp(settings_.breaking_threshold, kLeastScale * size, size), {});
 }
 
 std::optional<Error> fault_of(const PosedPieces& a, const PosedPieces& b, const UnionContactSettings& settings) {
