@@ -86,7 +86,9 @@ NamedShape read_box(const Node& node) {
 ConvexShape read_about_axis(const Node& node, Expected<ConvexShape> (*make)(double, double, int)) {
   allow_only(node, {"type", "margin", "radius", "half_height", "axis"});
   const double radius = read_size(node.at("radius"));
-  const double half_height = read_size(node.at("half_height"));
+  // A capsule without a height is a ball, as the library has it.
+  const Node height = node.at("half_height");
+  const double half_height = make == &ConvexShape::capsule ? read_number(height) : read_size(height);
   return value_or_refuse(make(radius, half_height, read_axis(node.at("axis"))), node);
 }
 

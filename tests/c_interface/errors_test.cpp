@@ -75,9 +75,19 @@ TEST_F(CErrors, OfFaces) {
   EXPECT_NE(make_shape(context_, &pdepth_convex_faces, &faces), nullptr);
   corners[4] = 7;
   refused(pdepth_convex_faces(c, &faces, &none_), PDEPTH_BAD_FACES, "faces[1]");
+  refused(pdepth_mesh_solid(c, &faces, 0, &none_), PDEPTH_BAD_FACES, "mesh.vertices[4]");
   corners[4] = 1, offsets[2] = 20;
   refused(pdepth_convex_faces(c, &faces, &none_), PDEPTH_BAD_FACES, "faces.offsets");
-  offsets[2] = 6, faces.num_faces = 3;
+  offsets[2] = 6, offsets[0] = 1;
+  refused(pdepth_convex_faces(c, &faces, &none_), PDEPTH_BAD_FACES, "faces.offsets");
+  refused(pdepth_mesh_solid(c, &faces, 0, &none_), PDEPTH_BAD_FACES, "mesh.offsets");
+  offsets[0] = 0, faces.points = nullptr;
+  refused(pdepth_convex_faces(c, &faces, &none_), PDEPTH_NULL_ARGUMENT, "faces.points");
+  faces.points = points.data(), faces.num_points = -1;
+  refused(pdepth_mesh_solid(c, &faces, 0, &none_), PDEPTH_BAD_VALUE, "mesh.num_points");
+  faces.num_points = 4, faces.reserved = 9;
+  refused(pdepth_convex_faces(c, &faces, &none_), PDEPTH_BAD_VALUE, "faces.reserved");
+  faces.reserved = 0, faces.num_faces = 3;
   refused(pdepth_convex_faces(c, &faces, &none_), PDEPTH_NOT_CLOSED, "faces[2]");
   faces.size = 4;
   refused(pdepth_convex_faces(c, &faces, &none_), PDEPTH_BAD_VALUE, "faces.size");
@@ -101,7 +111,16 @@ TEST_F(CErrors, OfPosesAndQuestions) {
   refused(ask(), PDEPTH_NULL_ARGUMENT, "question.a");
   question_.a = cube_.get(), question_.size = 0;
   refused(ask(), PDEPTH_BAD_VALUE, "question.size");
-  question_.size = sizeof question_, answer_.size = 8;
+  question_.size = sizeof question_, question_.reserved = 9;
+  refused(ask(), PDEPTH_BAD_VALUE, "question.reserved");
+  question_.reserved = 0, question_.pose_a.reserved = 9;
+  refused(ask(), PDEPTH_BAD_VALUE, "question.pose_a.reserved");
+  // A size that nobody set: the bytes behind the struct stay as they are.
+  question_.pose_a.reserved = 0, question_.size = 0x5a5a5a5a;
+  refused(ask(), PDEPTH_BAD_VALUE, "question.size");
+  question_.size = sizeof question_, answer_.size = 100'000;
+  refused(ask(), PDEPTH_BAD_VALUE, "answer.size");
+  answer_.size = 8;
   refused(ask(), PDEPTH_BAD_VALUE, "answer.size");
   refused(pdepth_depth(context_.get(), nullptr, &answer_), PDEPTH_BAD_VALUE, "answer.size");
   answer_.size = sizeof answer_;
@@ -110,6 +129,32 @@ TEST_F(CErrors, OfPosesAndQuestions) {
   EXPECT_EQ(answer_.contact, before);
   EXPECT_EQ(ask(), PDEPTH_OK);
   EXPECT_EQ(answer_.depth, 1);
+}
+
+/// Sizes that lie too far apart have answers that doubles do not hold.
+TEST_F(CErrors, OfAnswersPastTheRangeOfDoubles) {
+  const double e = 1e-100;
+  const std::array<double, 3> half{1.6, 8.9, 1.4};
+  const Shape cone = make_shape(context_, &pdepth_cone, e, e, 1), can = make_shape(context_, &pdepth_cylinder, e, e, 1);
+  const Shape box = make_shape(context_, &pdepth_box, half.data());
+  std::array<pdepth_part, 2> parts{};
+  parts[0].shape = cone.get(), parts[1].shape = can.get();
+  parts[1].pose.numbers[0] = e, parts[1].pose.numbers[1] = 3 * e;
+  const Shape both = make_shape(context_, &pdepth_compound, parts.data(), std::int64_t{2});
+  question_.a = both.get(), question_.b = box.get();
+  const std::int32_t before = answer_.contact = 77;
+  refused(pdepth_depth(context_.get(), &question_, &answer_), PDEPTH_OUT_OF_RANGE, "question");
+  EXPECT_EQ(answer_.contact, before);
+
+  const std::array<double, 12> points{1e-100, 0,      1e-100, -2e-100, -1e-100, -1e-100,
+                                      1e-100, 2e-100, 1e-100, -2e-100, -1e-100, -2e-100};
+  const std::array<double, 12> spheres{-3, 2, 3, 1, 1, 1, 1, 3, 2, -1, -3, 1};
+  const Shape speck = make_shape(context_, &pdepth_convex_hull, points.data(), std::int64_t{4});
+  const Shape hull = make_shape(context_, &pdepth_hull_of_spheres, spheres.data(), std::int64_t{3});
+  const Shape cloud = make_shape(context_, &pdepth_with_margin, hull.get(), 1e100);
+  question_.a = speck.get(), question_.b = cloud.get();
+  const bool answered = pdepth_depth(context_.get(), &question_, &answer_) == PDEPTH_OK;
+  EXPECT_TRUE(!answered || answer_.lower <= answer_.depth);
 }
 
 TEST_F(CErrors, OfSettings) {

@@ -20,6 +20,7 @@ constexpr std::array kKinds = {
     Kind{"rounded box", R"({"type":"box","half_extents":[0.9,0.7,0.5],"margin":0.1})", true},
     Kind{"sphere", R"({"type":"sphere","radius":1})", true},
     Kind{"capsule", R"({"type":"capsule","radius":0.5,"half_height":0.5,"axis":"z"})", true},
+    Kind{"capsule without a height", R"({"type":"capsule","radius":0.5,"half_height":0,"axis":"z"})", true},
     Kind{"ellipsoid", R"({"type":"ellipsoid","radii":[1,0.8,0.6]})", false},
     Kind{"cylinder", R"({"type":"cylinder","radius":0.6,"half_height":0.8,"axis":"z"})", false},
     Kind{"cone", R"({"type":"cone","radius":0.8,"half_height":0.9,"axis":"z"})", false},

@@ -98,6 +98,7 @@ TEST(Refusals, Shapes) {
       {with_a(R"({"type":"ellipsoid","radii":[1,"nan",1]})"), "non_finite", "a.radii[1]"},
       {with_a(R"({"type":"capsule","radius":1,"half_height":1})"), "missing_field", "a.axis"},
       {with_a(R"({"type":"capsule","radius":1,"half_height":1,"axis":"w"})"), "bad_value", "a.axis"},
+      {with_a(R"({"type":"capsule","radius":1,"half_height":-1,"axis":"x"})"), "bad_value", "a.half_height"},
       {with_a(R"({"type":"cylinder","radius":1,"half_height":0,"axis":"x"})"), "bad_value", "a.half_height"},
       {with_a(R"({"type":"cone","radius":-2,"half_height":1,"axis":"x"})"), "bad_value", "a.radius"},
       {with_a(R"({"type":"sphere_hull","spheres":[]})"), "too_few_points", "a.spheres"},

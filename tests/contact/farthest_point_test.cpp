@@ -48,5 +48,17 @@ TEST(FarthestPoint, ReachesAsFarAsTheExactSupport) {
   }
 }
 
+TEST(FarthestPoint, AlongTheShortestAndTheLongestDirections) {
+  const ConvexShape shapes[] = {*ConvexShape::ellipsoid({1, 2, 3}), *ConvexShape::cylinder(1, 2, 2),
+                                *ConvexShape::cone(1, 2, 0)};
+  for (const ConvexShape& shape : shapes) {
+    const Vec3 expected = farthest_point({&shape, Pose()}, {1, 1, 1});
+    for (const double length : {5e-324, 1e-310, 1e-200, 1e200, 1e308}) {
+      const Vec3 found = farthest_point({&shape, Pose()}, {length, length, length});
+      EXPECT_LT((found - expected).norm(), 1e-12) << length;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace pd::test

@@ -148,5 +148,17 @@ TEST(ApproximateWidth, FlatSetsAndRefusals) {
   EXPECT_EQ(approximate_width(wide, 0.1, scratch).error().where, "points[1]");
 }
 
+TEST(ApproximateWidth, TooSmallADeltaIsRefusedAtOnce) {
+  const std::vector<Vec3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  Scratch scratch;
+  EXPECT_TRUE(approximate_width(corners, 1e-6, scratch));
+  for (const double delta : {1e-7, 1e-12, 1e-300, 5e-324}) {
+    const auto width = approximate_width(corners, delta, scratch);
+    ASSERT_FALSE(width) << delta;
+    EXPECT_EQ(width.error().code, ErrorCode::limit_exceeded);
+    EXPECT_EQ(width.error().where, "delta");
+  }
+}
+
 }  // namespace
 }  // namespace pd

@@ -265,6 +265,8 @@ TEST(DirectionalDepth, SweptAndSmoothBodies) {
   const ConvexShape box(*ConvexPolytope::box(Vec3(1, 1, 1)));
   EXPECT_NEAR(directional_depth({&can, Pose()}, {&box, Pose()}, Vec3(0, 0, 2), scratch)->depth, 2, 1e-11);
   EXPECT_NEAR(directional_depth({&can, Pose()}, {&box, Pose()}, Vec3(0, 1, 0), scratch)->depth, 1.5, 1e-11);
+  EXPECT_NEAR(directional_depth({&can, Pose()}, {&box, Pose()}, Vec3::Constant(5e-324), scratch)->depth,
+              directional_depth({&can, Pose()}, {&box, Pose()}, Vec3(1, 1, 1), scratch)->depth, 1e-11);
   const ConvexShape rounded = *ConvexShape(*ConvexPolytope::box(Vec3(1, 1, 1))).with_margin(0.25);
   // Rounded box against a box: along the diagonal it leaves at the corner of the sum, a ball about (2, 2, 2).
   EXPECT_NEAR(directional_depth({&rounded, Pose()}, {&box, Pose()}, Vec3(1, 1, 1), scratch)->depth,

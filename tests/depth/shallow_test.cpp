@@ -131,5 +131,20 @@ TEST(Shallow, Refusals) {
             ErrorCode::limit_exceeded);
 }
 
+/// The engine is the caller's choice, and yet no pair and no delta ends the process.
+TEST(Shallow, FallsBackWhereItDoesNotAnswer) {
+  const ConvexShape egg = *ConvexShape::ellipsoid({1, 2, 3}), box(*ConvexPolytope::box({1, 1, 1}));
+  const Pose aside = *Pose::from_matrix(Mat3::Identity(), {0.5, 0.25, 0});
+  Scratch scratch;
+  const PenetrationDepth automatic = penetration_depth({&egg, Pose()}, {&box, aside}, scratch);
+  const PenetrationDepth shallow =
+      penetration_depth({&egg, Pose()}, {&box, aside}, scratch, {.method = Method::shallow});
+  EXPECT_EQ(shallow.depth, automatic.depth);
+  for (const double delta : {HUGE_VAL, std::nan(""), -1.0, 1e-300}) {
+    const DepthSettings settings{.method = Method::shallow, .delta = delta};
+    EXPECT_EQ(penetration_depth({&box, Pose()}, {&box, aside}, scratch, settings).depth, 1.5);
+  }
+}
+
 }  // namespace
 }  // namespace pd

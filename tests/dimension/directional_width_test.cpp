@@ -175,5 +175,39 @@ TEST(Duality, IsAnInvolutionThatTurnsWidthIntoThickness) {
   check_duality<5>();
 }
 
+TEST(DirectionalWidth, AlongTheShortestAndTheLongestDirections) {
+  const auto body =
+      *Body<2>::from_points(std::vector<Vector<2>>{Vector<2>(0, 0), Vector<2>(1, 0), Vector<2>(0, 1), Vector<2>(1, 1)});
+  QueryCounters counters;
+  for (const Backend backend : {Backend::exact, Backend::kernel, Backend::macbeath}) {
+    const auto width = *DirectionalWidth<2>::build(body, 0.01, backend);
+    const double expected = width.width(Vector<2>(1, 1), counters).width;
+    for (const double length : {5e-324, 1e-310, 1e-200, 1e200, 1e308}) {
+      EXPECT_NEAR(width.width(Vector<2>(length, length), counters).width, expected, 1e-12) << length;
+    }
+  }
+}
+
+TEST(EpsilonKernel, OfAStreamOutOfOrderIsEmpty) {
+  const std::vector<Vector<2>> points{Vector<2>(0, 0), Vector<2>(1, 0), Vector<2>(0, 1)};
+  auto stream = *EpsilonKernelStream<2>::create(0.1);
+  stream.select(points);
+  EXPECT_TRUE(stream.finish().indices.empty());
+  EXPECT_TRUE(stream.kernel_points().empty());
+  EXPECT_FALSE(stream.survey(points));
+  EXPECT_FALSE(stream.end_survey());
+  const auto late = stream.survey(points);
+  ASSERT_TRUE(late);
+  EXPECT_EQ(late->code, ErrorCode::bad_value);
+  stream.select(points);
+  EXPECT_EQ(stream.finish().indices.size(), 3u);
+
+  auto moved = *EpsilonKernelStream<2>::create(0.1);
+  const auto taken = std::move(moved);
+  EXPECT_TRUE(moved.survey(points));            // NOLINT(bugprone-use-after-move)
+  EXPECT_TRUE(moved.end_survey());              // NOLINT(bugprone-use-after-move)
+  EXPECT_TRUE(moved.finish().indices.empty());  // NOLINT(bugprone-use-after-move)
+}
+
 }  // namespace
 }  // namespace pd::dimension

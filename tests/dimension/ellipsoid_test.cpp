@@ -113,5 +113,17 @@ TEST(FattenSum, HoldsLemma10ForAffineImagesOfOneToThreeBodies) {
   check_sum_fattening<5>();
 }
 
+TEST(EnclosingEllipsoid, EndsWithTheLeastEta) {
+  const std::vector<Vector<2>> points{Vector<2>(0, 0), Vector<2>(1, 0), Vector<2>(0, 1), Vector<2>(3, 2)};
+  const auto ellipsoid = enclosing_ellipsoid<2>(points, 1e-7);
+  ASSERT_TRUE(ellipsoid);
+  EXPECT_LE(ellipsoid->sandwich.ratio, 2 * (1 + 1e-7));
+  for (const double eta : {0.99e-7, 1e-12, 1e-300}) {
+    const auto refused = enclosing_ellipsoid<2>(points, eta);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().where, "eta");
+  }
+}
+
 }  // namespace
 }  // namespace pd::dimension

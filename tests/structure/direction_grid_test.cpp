@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "scenes/shape_families.hpp"
@@ -104,6 +105,16 @@ TEST(DirectionGrid, Refusals) {
     EXPECT_EQ(direction_grid(kind, 1e-3, GridExtent::sphere, 1000).error().code, ErrorCode::limit_exceeded);
     EXPECT_EQ(direction_grid(kind, 1e-300).error().code, ErrorCode::limit_exceeded);
     EXPECT_EQ(direction_grid(kind, 5e-324).error().code, ErrorCode::limit_exceeded);
+  }
+}
+
+TEST(DirectionGrid, NumbersOfStepsStayInRange) {
+  for (const GridKind kind : {GridKind::geodesic, GridKind::latitude_longitude}) {
+    for (const double delta : {1e-12, 1e-300, 5e-324}) {
+      const auto grid = direction_grid(kind, delta, GridExtent::sphere, std::numeric_limits<std::int64_t>::max());
+      ASSERT_FALSE(grid);
+      EXPECT_EQ(grid.error().code, ErrorCode::limit_exceeded);
+    }
   }
 }
 

@@ -14,6 +14,7 @@
 /// - The library keeps no pointer of a struct or array after the call. It shares ownership of shapes that it needs.
 /// - A context or a pair is used by one thread at a time; a second thread gets PDEPTH_IN_USE. Shapes may be used by any
 ///   number of threads at once.
+/// - An answer that doubles cannot hold is refused as out_of_range: sizes of bodies may lie too far apart.
 /// - If a call fails, its results are not written, except for the rows of a batch.
 #ifndef PDEPTH_PDEPTH_H_
 #define PDEPTH_PDEPTH_H_
@@ -58,7 +59,8 @@ typedef struct pdepth_error {
   const char* message;  ///< what is wrong and what would be right
   const char* where;    ///< the argument, for example "points[3]" or "rows[17].pose_a.translation[0]"
 } pdepth_error;
-/// The error of the last call with this context that failed. The texts belong to the context and live until the next
+/// The error of the last call with this context that failed. A NULL context, and one that another thread uses, leave
+/// none. The texts belong to the context and live until the next
 /// call that fails, or until the context is destroyed.
 pdepth_status pdepth_last_error(const pdepth_context* context, pdepth_error* error);
 
@@ -358,7 +360,7 @@ typedef struct pdepth_manifold {
   pdepth_contact_point points[4];
 } pdepth_manifold;
 /// The contact of two convex bodies as at most four pairs of points.
-/// @param breaking_threshold  >= 0: pairs of points with a wider gap are left out.
+/// @param breaking_threshold  finite, >= 0: pairs of points with a wider gap are left out.
 /// Settings and pair: all. Error: unsupported for compounds. Time: a depth query, and O(k m) for faces of k and m
 /// vertices.
 pdepth_status pdepth_contact_manifold(pdepth_context* context, const pdepth_question* question,

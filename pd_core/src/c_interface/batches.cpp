@@ -39,6 +39,8 @@ class Rows {
     if (batch_.threads < 0 || batch_.threads > kMostThreads) {
       refuse(PDEPTH_BAD_VALUE, "must lie in 0 to 256", "batch.threads");
     }
+    require_unused(batch_.poses_a.reserved, "batch.poses_a");
+    require_unused(batch_.poses_b.reserved, "batch.poses_b");
     if (batch_.count > 0) given(batch_.a, "batch.a"), given(batch_.b, "batch.b");
   }
 

@@ -6,6 +6,7 @@
 #include <exception>
 #include <new>
 
+#include "c_interface/reading.hpp"
 #include "pd/shape/convex_polytope.hpp"
 
 namespace pd::c_interface {
@@ -59,6 +60,12 @@ void refuse(const Error& error, std::string_view argument) {
 void ErrorRecord::set(pdepth_status code, std::string_view text, std::string_view place, std::int64_t row) noexcept {
   status = code;
   copy_text(text, message);
+  // A row has no other question: its fields stand alone.
+  constexpr std::string_view kQuestion = "question";
+  if (row >= 0 && place.starts_with(kQuestion)) {
+    place.remove_prefix(kQuestion.size());
+    if (place.starts_with('.')) place.remove_prefix(1);
+  }
   if (row < 0) {
     copy_text(place, where);
     return;
@@ -142,7 +149,8 @@ pdepth_status pdepth_context_create(const pdepth_allocator* allocator, pdepth_co
   if (context == nullptr) return PDEPTH_NULL_ARGUMENT;
   MemorySource source = malloc_source();
   if (allocator != nullptr) {
-    if (allocator->size < sizeof(pdepth_allocator)) return PDEPTH_BAD_VALUE;
+    if (allocator->size < sizeof(pdepth_allocator) || allocator->size > kMostSize) return PDEPTH_BAD_VALUE;
+    if (allocator->reserved != 0) return PDEPTH_BAD_VALUE;
     if (allocator->allocate == nullptr || allocator->release == nullptr) return PDEPTH_NULL_ARGUMENT;
     source = {allocator->user, allocator->allocate, allocator->release};
   }

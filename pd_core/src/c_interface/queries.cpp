@@ -9,6 +9,7 @@
 #include "c_interface/reading.hpp"
 #include "depth/difference/smooth_difference.hpp"
 #include "depth/pair/scaled_shape.hpp"
+#include "numeric/length.hpp"
 #include "pd/compound/compound_depth.hpp"
 #include "pd/contact/time_of_impact.hpp"
 #include "pd/depth/difference_queries.hpp"
@@ -28,6 +29,7 @@ constexpr double kMaxAngle = 1e6;
 pdepth_directional directional_of(const auto& answer, std::int32_t part_a, std::int32_t part_b) {
   pdepth_directional out{};
   out.size = sizeof out;
+  require_finite({answer.depth, answer.lower, answer.upper}, {&answer.normal});
   out.contact = static_cast<std::int32_t>(answer.contact);
   out.depth = answer.depth;
   out.lower = answer.lower;
@@ -47,7 +49,7 @@ pdepth_directional ask_directional(const Question& question, const Vec3& directi
       value_of(directional_depth(PosedCompound{&question.a.whole("question.a"), question.posed_a.pose},
                                  PosedCompound{&question.b.whole("question.b"), question.posed_b.pose}, direction,
                                  space.scratch),
-               "");
+               "question");
   return directional_of(found, found.part_a, found.part_b);
 }
 
@@ -101,12 +103,17 @@ pdepth_support_answer ask_support(const PosedShape& body, const Vec3& direction)
     for (int k = 0; k < 3; ++k) out.point[k] = std::ldexp(scaled.point[k], exponent);
     return out;
   }
-  const Vec3 unit = direction.stableNormalized();
+  const Vec3 unit = detail::unit_vector(direction);
   const Mat3 rotation = polytope == nullptr ? body.pose.nearest_rotation() : body.pose.rotation();
   const Vec3 local = polytope == nullptr ? detail::support_point(body.shape->core(), rotation.transpose() * unit)
                                          : polytope->vertex(found.vertex_b);
   write_vector(rotation * local + body.pose.translation() + body.shape->margin() * unit, out.point);
   return out;
+}
+
+void require_finite_support(const pdepth_support_answer& answer) {
+  const Vec3 point(answer.point[0], answer.point[1], answer.point[2]);
+  require_finite({answer.value}, {&point});
 }
 
 }  // namespace
@@ -173,9 +180,9 @@ pdepth_status pdepth_time_of_impact(pdepth_context* context, const pdepth_questi
     const TimeOfImpact found = time_of_impact(read_motion(moves.a, read.posed_a, moves.duration, true),
                                               read_motion(moves.b, read.posed_b, moves.duration, false), moves.duration,
                                               workspace_of(*context).scratch, settings);
+    if (contact != nullptr) write_depth(found.contact, *contact);
     write_answer({sizeof out, found.hit ? 1 : 0, found.reached ? 1 : 0, found.queries, found.time, found.certified},
                  out);
-    if (contact != nullptr) write_depth(found.contact, *contact);
   });
 }
 
@@ -204,6 +211,7 @@ pdepth_status pdepth_width(pdepth_context* context, const pdepth_shape* shape, c
     const ConvexShape* const body = given(shape, "shape").convex();
     if (body == nullptr) refuse(PDEPTH_UNSUPPORTED, "a width is that of a convex shape", "shape");
     const Width found = width({body, read_pose(pose, "pose")}, workspace_of(*context).scratch, method, read.delta);
+    require_finite({found.width, found.lower, found.upper}, {&found.normal});
     pdepth_width_answer result{sizeof out, found.bracket_reached ? 1 : 0, found.width, found.lower, found.upper, {}};
     write_vector(found.normal, result.normal);
     write_answer(result, out);
@@ -218,7 +226,9 @@ pdepth_status pdepth_support(pdepth_context* context, const pdepth_shape* shape,
     const Vec3 along = read_vector(direction, "direction");
     const Pose place = read_pose(pose, "pose");
     if (const ConvexShape* const convex = body.convex()) {
-      write_answer(ask_support({convex, place}, along), out);
+      const pdepth_support_answer found = ask_support({convex, place}, along);
+      require_finite_support(found);
+      write_answer(found, out);
       return;
     }
     const std::vector<PosedShape> parts = value_of(body.whole("shape").posed(place), "");
@@ -228,6 +238,7 @@ pdepth_status pdepth_support(pdepth_context* context, const pdepth_shape* shape,
       found.part = static_cast<std::int32_t>(i);
       if (i == 0 || found.value > best.value) best = found;
     }
+    require_finite_support(best);
     write_answer(best, out);
   });
 }

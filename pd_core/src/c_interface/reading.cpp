@@ -67,6 +67,11 @@ void require_length(double value, const char* argument) {
   if (!(value >= 0) || std::isinf(value)) refuse(PDEPTH_BAD_VALUE, "must be a finite length >= 0", argument);
 }
 
+void require_unused(std::int32_t reserved, const char* owner) {
+  if (reserved == 0) return;
+  refuse(PDEPTH_BAD_VALUE, "must be 0, not " + std::to_string(reserved), std::string(owner) + ".reserved");
+}
+
 Vec3 read_vector(const double* numbers, const char* argument) {
   const double* const three = &given(numbers, argument);
   require_finite(three, 3, argument, "");
@@ -128,6 +133,7 @@ void Question::require_convex() const {
 
 Question read_question(const pdepth_question* question, SettingsRoom& room) {
   const pdepth_question& read = read_struct(question, "question");
+  require_unused(read.reserved, "question");
   const pdepth_shape& a = given(read.a, "question.a");
   const pdepth_shape& b = given(read.b, "question.b");
   return {a,

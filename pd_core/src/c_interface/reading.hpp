@@ -13,6 +13,9 @@
 
 namespace pd::c_interface {
 
+/// No struct of any header comes near: a larger size is one that was never set.
+inline constexpr std::uint32_t kMostSize = 4096;
+
 [[noreturn]] void refuse_size(std::uint32_t size, std::size_t expected, const char* argument);
 [[noreturn]] void refuse_newer_fields(const char* argument);
 
@@ -21,7 +24,7 @@ template <class Struct>
 const Struct& read_struct(const Struct* pointer, const char* argument) {
   const Struct& found = given(pointer, argument);
   if (found.size == sizeof(Struct)) return found;
-  if (found.size < sizeof(Struct)) refuse_size(found.size, sizeof(Struct), argument);
+  if (found.size < sizeof(Struct) || found.size > kMostSize) refuse_size(found.size, sizeof(Struct), argument);
   const auto* const bytes = reinterpret_cast<const unsigned char*>(pointer);
   for (std::size_t i = sizeof(Struct); i < found.size; ++i) {
     if (bytes[i] != 0) refuse_newer_fields(argument);
@@ -33,7 +36,7 @@ const Struct& read_struct(const Struct* pointer, const char* argument) {
 template <class Struct>
 Struct& answer_struct(Struct* pointer, const char* argument) {
   Struct& found = given(pointer, argument);
-  if (found.size < sizeof(Struct)) refuse_size(found.size, sizeof(Struct), argument);
+  if (found.size < sizeof(Struct) || found.size > kMostSize) refuse_size(found.size, sizeof(Struct), argument);
   return found;
 }
 
@@ -55,10 +58,13 @@ void write_answer(const Struct& answer, Struct& out) {
 
 /// A number of the caller that has to be finite and not below 0.
 void require_length(double value, const char* argument);
+/// A field that a later header may give a meaning to, so that it has to be 0. @param owner  the struct that has it
+void require_unused(std::int32_t reserved, const char* owner);
 
 /// @param numbers  as many as the form has.
 [[nodiscard]] Pose read_pose(std::int32_t form, const double* numbers, const char* argument);
 [[nodiscard]] inline Pose read_pose(const pdepth_pose& pose, const char* argument) {
+  require_unused(pose.reserved, argument);
   return read_pose(pose.form, pose.numbers, argument);
 }
 /// NULL is the identity.

@@ -23,29 +23,37 @@ void require_count(std::int64_t count, const char* argument) {
 }
 
 /// [count x width] numbers.
-std::span<const double> read_rows(const double* numbers, std::int64_t count, int width, const char* argument) {
-  require_count(count, "count");
+std::span<const double> read_rows(const double* numbers, std::int64_t count, int width, const char* argument,
+                                  const char* count_name = "count") {
+  require_count(count, count_name);
   if (count > 0) given(numbers, argument);
   return {numbers, static_cast<std::size_t>(count) * static_cast<std::size_t>(width)};
 }
 
-std::vector<Vec3> read_points(const double* numbers, std::int64_t count) {
-  const std::span<const double> rows = read_rows(numbers, count, 3, "points");
+std::vector<Vec3> read_points(const double* numbers, std::int64_t count, const char* argument = "points",
+                              const char* count_name = "count") {
+  const std::span<const double> rows = read_rows(numbers, count, 3, argument, count_name);
   std::vector<Vec3> points;
   points.reserve(static_cast<std::size_t>(count));
   for (std::size_t i = 0; i < rows.size(); i += 3) points.emplace_back(rows[i], rows[i + 1], rows[i + 2]);
   return points;
 }
 
-/// The core calls points of a polytope or a mesh its vertices.
+/// The core calls points of a polytope or a mesh its vertices, and numbers of points in faces its corners.
+/// @param argument  the struct that the caller's arrays stand in, or empty.
 template <class Body>
-Body callers_words(Expected<Body>&& made) {
-  if (!made && made.error().where.starts_with("vertices")) {
-    refuse({made.error().code, made.error().message, "points" + made.error().where.substr(8)}, "");
-  }
-  return value_of(std::move(made), "");
+Body callers_words(Expected<Body>&& made, std::string_view argument) {
+  if (made) return std::move(made).value();
+  Error error = made.error();
+  const auto rename = [&](std::string_view word, std::string_view callers) {
+    if (!error.where.starts_with(word)) return false;
+    error.where.replace(0, word.size(), callers);
+    return true;
+  };
+  if (!rename("vertices", "points")) rename("corners", "vertices");
+  // `faces[3]` is a face of the struct `faces`.
+  refuse(error, error.where.starts_with("faces") && argument == "faces" ? "" : argument);
 }
-ConvexPolytope polytope_of(Expected<ConvexPolytope>&& made) { return callers_words(std::move(made)); }
 
 /// The loops of a `pdepth_faces`, which stay in the caller's memory.
 struct ReadFaces {
@@ -54,10 +62,12 @@ struct ReadFaces {
 
   ReadFaces(const pdepth_faces* faces, const std::string& argument) {
     const pdepth_faces& read = read_struct(faces, argument.c_str());
+    require_unused(read.reserved, argument.c_str());
     require_count(read.num_faces, (argument + ".num_faces").c_str());
-    points = read_points(read.points, read.num_points);
+    points =
+        read_points(read.points, read.num_points, (argument + ".points").c_str(), (argument + ".num_points").c_str());
     offsets = {&given(read.offsets, (argument + ".offsets").c_str()), static_cast<std::size_t>(read.num_faces) + 1};
-    if (offsets.back() < 0 || !std::is_sorted(offsets.begin(), offsets.end())) {
+    if (offsets.front() != 0 || !std::is_sorted(offsets.begin(), offsets.end())) {
       refuse(PDEPTH_BAD_FACES, "offsets rise from 0 to the number of corners", argument + ".offsets");
     }
     corners = {&given(read.vertices, (argument + ".vertices").c_str()), static_cast<std::size_t>(offsets.back())};
@@ -186,13 +196,13 @@ pdepth_status pdepth_cone(pdepth_context* context, double radius, double half_he
 
 pdepth_status pdepth_convex_hull(pdepth_context* context, const double* points, int64_t count, pdepth_shape** shape) {
   return make_convex(context, shape,
-                     [&] { return polytope_of(ConvexPolytope::from_points(read_points(points, count))); });
+                     [&] { return callers_words(ConvexPolytope::from_points(read_points(points, count)), ""); });
 }
 
 pdepth_status pdepth_convex_faces(pdepth_context* context, const pdepth_faces* faces, pdepth_shape** shape) {
   return make_convex(context, shape, [&] {
     const ReadFaces read(faces, "faces");
-    return polytope_of(ConvexPolytope::from_faces(read.points, read.offsets, read.corners));
+    return callers_words(ConvexPolytope::from_faces(read.points, read.offsets, read.corners), "faces");
   });
 }
 
@@ -202,9 +212,10 @@ pdepth_status pdepth_mesh_solid(pdepth_context* context, const pdepth_faces* mes
     if (!kHasCompounds) refuse(PDEPTH_UNSUPPORTED, "the module for convex bodies makes no solids", "mesh");
     given(shape, "shape");
     const ReadFaces read(mesh, "mesh");
-    *shape = new pdepth_shape(callers_words(MeshSolid::from_faces({read.points, read.offsets, read.corners},
-                                                                  {.turn_faces = turn_faces != 0})),
-                              context->source);
+    *shape = new pdepth_shape(
+        callers_words(MeshSolid::from_faces({read.points, read.offsets, read.corners}, {.turn_faces = turn_faces != 0}),
+                      "mesh"),
+        context->source);
   });
 }
 
@@ -284,6 +295,7 @@ pdepth_status pdepth_shape_surface(pdepth_context* context, const pdepth_shape* 
                                    const pdepth_surface* surface) {
   return at_border(context, [&] {
     const pdepth_surface& room = read_struct(surface, "surface");
+    require_unused(room.reserved, "surface");
     if (part == PDEPTH_PART_MESH) {
       write_mesh(mesh_of(given(shape, "shape")), room);
       return;

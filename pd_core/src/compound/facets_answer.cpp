@@ -69,7 +69,7 @@ void FacetsAnswer::find(double reach) {
 Error FacetsAnswer::too_many_facets() const {
   return {ErrorCode::limit_exceeded,
           "the differences of the parts have more than " + std::to_string(settings_.max_facets) +
-              " facets; the octree answers within (1 + delta)",
+              " facets; fewer parts have fewer (in C++, UnionSettings also allows more, or the octree)",
           "max_facets"};
 }
 

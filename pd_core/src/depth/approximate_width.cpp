@@ -21,6 +21,8 @@ namespace {
 
 /// Squares of lengths stay in range.
 constexpr double kLargest = 1e150;
+/// Of the first pass: delta is at least some 9e-7.
+constexpr std::int64_t kMostDirections = 500'000;
 /// Directions of one refining pass: few enough that the kernel's next width profits from them, and a pass is not
 /// waiting for memory.
 constexpr std::size_t kBatch = 24;
@@ -72,11 +74,9 @@ class WidthSearch {
   WidthSearch(std::span<const Vec3> points, double delta, Scratch& scratch)
       : points_(points), delta_(delta), scratch_(scratch) {}
 
-  ApproximateWidth run() {
+  /// @param grid  as many directions as leave a third of the kernel to the passes that know where it is thin.
+  ApproximateWidth run(const DirectionGrid& grid) {
     fatten();
-    // As many directions as leave a third of the kernel to the passes that know where it is thin.
-    const DirectionGrid grid = *direction_grid(GridKind::geodesic, std::min(1.0, 3 * delta_), GridExtent::hemisphere,
-                                               std::numeric_limits<std::int64_t>::max());
     std::vector<Vec3> directions = grid.directions;
     for (Vec3& d : directions) d = (to_fat_.transpose() * d).normalized();
     pass(directions);
@@ -209,7 +209,12 @@ Expected<ApproximateWidth> approximate_width(std::span<const Vec3> points, doubl
     if (!points[i].allFinite()) return Error{ErrorCode::non_finite, "a point needs three finite numbers", where};
     return Error{ErrorCode::out_of_range, "coordinates are limited to 1e150", where};
   }
-  return WidthSearch(points, delta, scratch).run();
+  const Expected<DirectionGrid> grid =
+      direction_grid(GridKind::geodesic, std::min(1.0, 3 * delta), GridExtent::hemisphere, kMostDirections);
+  if (!grid) {
+    return Error{ErrorCode::limit_exceeded, "a width within less than 1e-6 takes too many directions", "delta"};
+  }
+  return WidthSearch(points, delta, scratch).run(*grid);
 }
 
 }  // namespace pd

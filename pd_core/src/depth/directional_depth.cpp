@@ -13,6 +13,7 @@
 #include "depth/rays/portal.hpp"
 #include "depth/rays/ray_shooting.hpp"
 #include "numeric/floating_point_guard.hpp"
+#include "numeric/length.hpp"
 #include "numeric/root_sum.hpp"
 #include "pd/depth/scratch.hpp"
 #include "shape/refused_vector.hpp"
@@ -143,7 +144,7 @@ void swept_depth(const PosedShape& a, const PosedShape& b, const Vec3& direction
     return;
   }
   detail::SweptShooter shooter(a, b, buffers.points, inner_radius, kRelative);
-  const detail::RayShot shot = shooter.shoot(direction.stableNormalized());
+  const detail::RayShot shot = shooter.shoot(detail::unit_vector(direction));
   out.lower = shot.lower;
   out.upper = shot.upper;
   out.depth = shot.upper;

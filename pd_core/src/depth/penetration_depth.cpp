@@ -29,10 +29,10 @@ void solve(const PosedShape& a, const PosedShape& b, const DepthSettings& settin
   const detail::Margins margins{a.shape->margin(), b.shape->margin()};
   if (settings.method == Method::grid) {
     detail::grid_depth(a, b, settings, buffers, out);
-  } else if (settings.method == Method::shallow) {
+  } else if (settings.method == Method::shallow && polytope_a && polytope_b) {
     // The answer is exact whatever delta is: more rays only spare facets.
     const double delta =
-        std::max(settings.delta > 0 ? settings.delta : detail::kDefaultShallowDelta, detail::kLeastShallowDelta);
+        std::clamp(settings.delta > 0 ? settings.delta : detail::kDefaultShallowDelta, detail::kLeastShallowDelta, 1.0);
     const Expected<DirectionGrid> grid =
         direction_grid(GridKind::geodesic, delta / 4, GridExtent::sphere, std::numeric_limits<std::int64_t>::max());
     ShallowCounts counts;

@@ -8,6 +8,7 @@
 #include "depth/difference/exact_support.hpp"
 #include "depth/rays/ray_shooting.hpp"
 #include "numeric/floating_point_guard.hpp"
+#include "numeric/length.hpp"
 #include "numeric/root_sum.hpp"
 #include "pd/depth/scratch.hpp"
 #include "pd/numeric/predicates.hpp"
@@ -90,9 +91,9 @@ Expected<PenetrationDepth> polyhedral_depth(const PosedShape& a, const PosedShap
   out.depth = std::clamp(detail::to_double(exact.approximate()), out.lower, out.upper);
   out.translation = separating_multiple(pair, best, q, out.upper);
   out.translation.array() += 0.0;
-  out.normal = q.stableNormalized();
+  out.normal = detail::unit_vector(q);
   out.normal.array() += 0.0;
-  out.witness_a = crossing_on_a(pair, corners, q.stableNormalized());
+  out.witness_a = crossing_on_a(pair, corners, detail::unit_vector(q));
   out.witness_b = out.witness_a + out.translation;
   const detail::FacetOfDifference facet = facet_of_direction(pair, detail::ExactDirection(best.normal));
   out.feature_a = facet.on_a;

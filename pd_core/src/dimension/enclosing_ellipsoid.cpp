@@ -39,7 +39,10 @@ Farthest farthest(const detail::Points& points, const detail::AnySandwich& sandw
 
 Expected<EnclosingEllipsoid<kAnyDimension>> detail::enclosing_ellipsoid_of(const Points& points, double eta) {
   const pd::detail::FloatingPointGuard guard;
-  if (!(eta > 0 && eta <= 1)) return Error{ErrorCode::bad_value, "eta must lie in (0, 1]", "eta"};
+  // The certificate keeps 1e-9 for rounding, which a smaller eta could not be told from.
+  if (!(eta >= detail::kLeastEpsilon && eta <= 1)) {
+    return Error{ErrorCode::bad_value, "eta must lie in [1e-7, 1]", "eta"};
+  }
   if (const auto error = detail::check_points(points)) return *error;
 
   EnclosingEllipsoid<kAnyDimension> result;

@@ -85,6 +85,7 @@ Expected<EpsilonKernelStream<D>> EpsilonKernelStream<D>::create(double epsilon) 
 template <int D>
 std::optional<Error> EpsilonKernelStream<D>::survey(std::span<const Vector<D>> chunk) {
   const pd::detail::FloatingPointGuard guard;
+  if (!core_ || builder_) return Error{ErrorCode::bad_value, "the survey has ended, or the stream was moved", "chunk"};
   if (auto error = detail::check_coordinates(chunk, surveyed_)) return error;
   core_->add(chunk);
   surveyed_ += static_cast<std::int64_t>(chunk.size());
@@ -94,7 +95,7 @@ std::optional<Error> EpsilonKernelStream<D>::survey(std::span<const Vector<D>> c
 template <int D>
 std::optional<Error> EpsilonKernelStream<D>::end_survey() {
   const pd::detail::FloatingPointGuard guard;
-  if (surveyed_ <= D) return detail::too_few_points_error(surveyed_, D);
+  if (!core_ || surveyed_ <= D) return detail::too_few_points_error(core_ ? surveyed_ : 0, D);
   if (!core_->full_dimensional() || detail::too_thin(core_->sandwich())) return detail::flat_error("points", D);
   builder_ = std::make_unique<KernelBuilder>(core_->sandwich().fattening(), epsilon_);
   return std::nullopt;
@@ -103,18 +104,20 @@ std::optional<Error> EpsilonKernelStream<D>::end_survey() {
 template <int D>
 void EpsilonKernelStream<D>::select(std::span<const Vector<D>> chunk) {
   const pd::detail::FloatingPointGuard guard;
+  if (!builder_) return;
   builder_->add(chunk, selected_);
   selected_ += static_cast<std::int64_t>(chunk.size());
 }
 
 template <int D>
 EpsilonKernel<D> EpsilonKernelStream<D>::finish() {
-  return fixed<D>(kernel_of(*builder_));
+  return builder_ ? fixed<D>(kernel_of(*builder_)) : EpsilonKernel<D>{};
 }
 
 template <int D>
 std::vector<Vector<D>> EpsilonKernelStream<D>::kernel_points() const {
   std::vector<Vector<D>> points;
+  if (!builder_) return points;
   for (const auto& p : builder_->chosen()) points.push_back(detail::fixed<D>(p.point));
   return points;
 }

@@ -35,4 +35,13 @@ template <class Vector>
   return exponent == 0 ? root : std::ldexp(root, exponent);
 }
 
+/// A finite vector but 0 over its length. Eigen's own is no unit vector where the length overflows or is subnormal.
+template <class Vector>
+[[nodiscard]] Vector unit_vector(const Vector& v) {
+  const double largest = v.cwiseAbs().maxCoeff();
+  if (largest > 0x1p-900 && largest < 0x1p900) return v.stableNormalized();
+  const int exponent = std::ilogb(largest);
+  return Vector(v.unaryExpr([=](double x) { return std::ldexp(x, -exponent); })).normalized();
+}
+
 }  // namespace pd::detail

@@ -16,6 +16,8 @@ namespace pd {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
+/// Whatever a caller allows: numbers of rows and of steps stay in the range of int.
+constexpr std::int64_t kMostDirections = std::int64_t{1} << 30;
 constexpr double kRounding = 1e-14;  ///< of cosines computed from unit vectors, with room
 
 /// sin and cos by Taylor's series: the libraries' own differ between machines.
@@ -163,8 +165,9 @@ Expected<DirectionGrid> latitude_longitude_grid(double delta, GridExtent extent,
 Expected<DirectionGrid> direction_grid(GridKind kind, double delta, GridExtent extent, std::int64_t max_directions) {
   if (!(delta > 0 && delta <= 1)) return Error{ErrorCode::bad_value, "delta must lie in (0, 1]", "delta"};
   const detail::FloatingPointGuard guard;
-  return kind == GridKind::geodesic ? geodesic_grid(delta, extent, max_directions)
-                                    : latitude_longitude_grid(delta, extent, max_directions);
+  const std::int64_t limit = std::min(max_directions, kMostDirections);
+  return kind == GridKind::geodesic ? geodesic_grid(delta, extent, limit)
+                                    : latitude_longitude_grid(delta, extent, limit);
 }
 
 }  // namespace pd

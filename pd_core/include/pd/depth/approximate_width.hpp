@@ -38,8 +38,8 @@ struct ApproximateWidth {
 /// sets far from the origin.
 ///
 /// @param points  [n x 3], n >= 1, finite, |coordinate| <= 1e150.
-/// @param delta   in (0, 1].
-/// @return ErrorCode::too_few_points, non_finite, out_of_range ("points[i]"), bad_value ("delta").
+/// @param delta   in (0, 1], at least 1e-6.
+/// @return ErrorCode::too_few_points, non_finite, out_of_range ("points[i]"), bad_value or limit_exceeded ("delta").
 /// Time: `dot_products_per_point` products a point, and the work on kernels of O(1 / delta) points, which does not
 /// depend on n. Measured for delta = 1e-2: about 190 products on a sphere, the worst case met, and 75 to 85 on
 /// flattened spheres, cubes and needles.

@@ -77,6 +77,7 @@ class DirectionalWidth {
   /// A point of K, extreme up to epsilon. Directions have any length but zero.
   [[nodiscard]] SupportPoint<D> support(const Vector<D>& direction, QueryCounters& counters) const;
 
+  /// Directions of any length but zero, the longest and the shortest, too: their `value`s over- and underflow.
   [[nodiscard]] DirectionalWidthAnswer<D> width(const Vector<D>& direction, QueryCounters& counters) const;
 
   [[nodiscard]] double epsilon() const { return epsilon_; }

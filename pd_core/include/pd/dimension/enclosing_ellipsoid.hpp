@@ -29,7 +29,7 @@ struct EnclosingEllipsoid {
 };
 
 /// @param points  [n x D], n > D, finite, |coordinate| <= kMaxCoordinate.
-/// @param eta     in (0, 1].
+/// @param eta     in [1e-7, 1].
 /// @return ErrorCode::too_few_points, non_finite, out_of_range ("points[i]"), not_full_dimensional, bad_value ("eta").
 /// Volume: at most (1 + eta)^d of the minimum's. O(n) time a pass; passes are measured, not bounded by theory.
 template <int D>

@@ -44,6 +44,7 @@ template <int D>
 
 /// A kernel of points that are not kept: two passes of chunks in the same order.
 ///
+/// Until `end_survey` has succeeded, and once the stream was moved from, `select` does nothing and the kernel is empty.
 /// Memory: the kernel and its hull, and 65536 points; nothing that grows with n.
 template <int D>
 class EpsilonKernelStream {
@@ -51,7 +52,8 @@ class EpsilonKernelStream {
   /// @return ErrorCode::bad_value ("epsilon").
   static Expected<EpsilonKernelStream> create(double epsilon);
 
-  /// First pass: every chunk. @return ErrorCode::non_finite or out_of_range ("points[i]", i counted over the stream).
+  /// First pass: every chunk. @return ErrorCode::non_finite or out_of_range ("points[i]", i counted over the stream);
+  /// bad_value ("chunk") after the pass.
   std::optional<Error> survey(std::span<const Vector<D>> chunk);
   /// Between the passes. @return ErrorCode::too_few_points, not_full_dimensional ("points").
   std::optional<Error> end_survey();

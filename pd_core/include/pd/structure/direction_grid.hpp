@@ -44,7 +44,8 @@ struct DirectionGrid {
 /// most the plane one, so half a cell's diagonal bounds the distance to its nearest corner.
 ///
 /// @param delta  in (0, 1].
-/// @return ErrorCode::bad_value ("delta"), or limit_exceeded when more than `max_directions` are needed.
+/// @return ErrorCode::bad_value ("delta"), or limit_exceeded when more than `max_directions`, or than 2^30, are
+/// needed.
 /// Time and space O(1 / delta).
 [[nodiscard]] Expected<DirectionGrid> direction_grid(GridKind kind, double delta,
                                                      GridExtent extent = GridExtent::sphere,

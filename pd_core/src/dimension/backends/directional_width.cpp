@@ -1,5 +1,6 @@
 #include "pd/dimension/directional_width.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include "dimension/backends/cone_structure.hpp"
@@ -55,9 +56,19 @@ SupportPoint<D> DirectionalWidth<D>::support(const Vector<D>& direction, QueryCo
 
 template <int D>
 DirectionalWidthAnswer<D> DirectionalWidth<D>::width(const Vector<D>& direction, QueryCounters& counters) const {
-  DirectionalWidthAnswer<D> r{0, support(direction, counters), support(-direction, counters)};
+  const double largest = direction.cwiseAbs().maxCoeff();
+  const bool extreme = largest > 0 && std::isfinite(largest) && std::abs(std::ilogb(largest)) > 400;
+  const int exponent = extreme ? std::ilogb(largest) : 0;
+  Vector<D> v = direction;
+  if (exponent != 0) {
+    for (double& x : v) x = std::ldexp(x, -exponent);
+  }
+  DirectionalWidthAnswer<D> r{0, support(v, counters), support(-v, counters)};
   r.least.value = -r.least.value;
-  r.width = (r.most.value - r.least.value) / direction.norm();
+  r.width = (r.most.value - r.least.value) / v.norm();
+  if (exponent != 0) {
+    for (double* const value : {&r.most.value, &r.least.value}) *value = std::ldexp(*value, exponent);
+  }
   return r;
 }
 
