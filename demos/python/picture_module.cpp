@@ -84,8 +84,8 @@ render::Image draw_scene(const query::Node& line, render::Size size, render::Vie
     add_body(a.compound, pose_a, palette::kBodyA, 1, scene);
   }
   const render::Box box = render::bounds(scene);
-  if (const double size = (box.upper - box.lower).cwiseAbs().maxCoeff();
-      !(size >= kLeastSize && size <= kLargestSize)) {
+  if (const double extent = (box.upper - box.lower).cwiseAbs().maxCoeff();
+      !(extent >= kLeastSize && extent <= kLargestSize)) {
     refuse("out_of_range", "a picture shows bodies of a size from 1e-100 to 1e100", "picture");
   }
   scene.ground.height = box.lower.z();
