@@ -487,7 +487,7 @@ TEST_F(MeshDoors, CheckNamesFaultsAndPlaces) {
   EXPECT_EQ(crossed.at("loose_points"), 0);
   EXPECT_NE(crossed.at("findings")[0].at("where").get<std::string>().find("face 1 (line 10) and face"),
             std::string::npos);
-  write("beside.obj", std::string(kCube) + "v 7 0 0\n");
+  write("beside.obj", std::string(kCube) + "v 7 0 0\nf 9 9 9\n");
   const Json beside = Json::parse(run("check beside.obj --json").out);
   EXPECT_EQ(beside.at("loose_points"), 1);
   EXPECT_EQ(beside.at("asked_as"), "solid");
