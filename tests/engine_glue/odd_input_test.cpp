@@ -61,7 +61,8 @@ struct Top {
     w.world().updateAabbs();
   }
   btTriangleMesh triangles;
-  std::vector<float> heights = std::vector<float>(9, 0.0F);
+  std::vector<btScalar> heights =
+      std::vector<btScalar>(9, btScalar(0));  ///< Bullet reads PHY_FLOAT in its own precision
   BulletWorld w;
   btSphereShape ball{btScalar(0.25)};
 };
