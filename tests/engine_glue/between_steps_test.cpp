@@ -1,5 +1,4 @@
-// What a host does between two steps: it detects contacts as often as it likes, edits shapes meanwhile, and exchanges
-// solvers.
+// Between two steps a host detects contacts as often as it likes, edits shapes meanwhile, and exchanges solvers.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -142,7 +142,7 @@ TEST(OddInput, QueriesRefuseWhatIsNoNumber) {
   }
 }
 
-/// Where a ball that bounces is after a second of steps, and how many parts they had.
+/// Returns the height of a bouncing ball after a second of steps, and how many parts they had.
 std::pair<btScalar, int> bounced(const RollbackSettings& settings) {
   Top top(Ground::box);
   BulletPenetrationDepthSolver solver;

@@ -45,8 +45,7 @@ void keep_points_of_pieces(const AskedPair& asked, const PairAnswer& answer, Thr
                       .manifold = buffers.manifold});
   const ContactManifold alone = points;
   count_covered(keep_uncovered(pieces.as(answer.a, answer.b), answer.depth, AnswerPoints::made, points), buffers);
-  // A part deep in a triangle: nobody sees the other parts' contacts here, so that it would fall through without its
-  // own.
+  // The other parts' contacts are not known here. A part that is deep in a triangle would fall through without its own.
   const bool triangle = is_triangle(asked.a) || is_triangle(asked.b);
   if (points.count == 0 && triangle && -answer.depth.signed_distance() > asked.contact_reach) points = alone;
 }

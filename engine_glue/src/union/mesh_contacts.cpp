@@ -103,7 +103,7 @@ class MeshContacts final : public UnionContacts {
   SolverCore::Outcome ask(const ChildAsked& child, const UnionQuestion& question, const TriangleInResult& triangle,
                           PieceMemory* memory, PairAnswer& answer) const;
   void add_fronts(const btCollisionObjectWrapper& a, const UnionQuestion& question, Patches& patches);
-  /// The way out of the whole body, where no contact of a child is left that overlaps.
+  /// Adds the way out of the whole body if no contact of a child is left that overlaps.
   void leave_straddled(const UnionQuestion& question, Patches& patches);
 
   std::vector<Child> children_;               ///< of question.a, or itself

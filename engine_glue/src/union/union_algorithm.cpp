@@ -170,7 +170,7 @@ void UnionAlgorithm::processCollision(const btCollisionObjectWrapper* a, const b
   btPersistentManifold& first = s.manifolds.first(*one.getCollisionObject(), *other.getCollisionObject());
   result->setPersistentManifold(&first);
   if (!s.world.core().closed()) {
-    // Where nobody compared the shapes, a stamp of its own has each of them compared once.
+    // A stamp of its own has each shape compared once if nobody compared them in this step.
     SolverCore& core = s.world.core();
     const std::uint64_t of_step = s.world.stamp(info, !std::exchange(s.used, true));
     const std::uint64_t stamp = of_step != 0 ? of_step : core.next_stamp();

@@ -104,7 +104,7 @@ class ActionsOfWorld : private btDiscreteDynamicsWorld {
   }
 };
 
-/// The same of a dispatcher's tables.
+/// Reads the tables of a dispatcher, which Bullet keeps protected.
 class TablesOfDispatcher : private btCollisionDispatcher {
  public:
   TablesOfDispatcher() = delete;

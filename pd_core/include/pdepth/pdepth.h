@@ -10,10 +10,9 @@
 ///   and where. Nothing throws, aborts or prints.
 /// - The first field of a struct with a field `size` is sizeof the struct, set by the caller, so that the struct can
 ///   grow. All other fields may be 0, which always means the default. C99: `pdepth_question q = {.size = sizeof q};`.
-/// - The fields named `reserved` are 0.
+/// - The fields named `reserved` have to be 0; other values are refused.
 /// - The library keeps no pointer of a struct or array after the call. It shares ownership of shapes that it needs.
-/// - A context or a pair is used by one thread at a time; a second thread gets PDEPTH_IN_USE. Shapes may be used by any
-///   number of threads at once.
+/// - A context or a pair is used by one thread at a time; a second thread gets PDEPTH_IN_USE. Threads may share shapes.
 /// - An answer that doubles cannot hold is refused as out_of_range: sizes of bodies may lie too far apart.
 /// - If a call fails, its results are not written, except for the rows of a batch.
 #ifndef PDEPTH_PDEPTH_H_
@@ -60,8 +59,7 @@ typedef struct pdepth_error {
   const char* where;    ///< the argument, for example "points[3]" or "rows[17].pose_a.translation[0]"
 } pdepth_error;
 /// The error of the last call with this context that failed. A NULL context, and one that another thread uses, leave
-/// none. The texts belong to the context and live until the next
-/// call that fails, or until the context is destroyed.
+/// none. The texts belong to the context and live until the next call that fails, or until the context is destroyed.
 pdepth_status pdepth_last_error(const pdepth_context* context, pdepth_error* error);
 
 // ---- Context

@@ -21,7 +21,7 @@ namespace {
 
 /// Squares of lengths stay in range.
 constexpr double kLargest = 1e150;
-/// Of the first pass: delta is at least some 9e-7.
+/// The first pass takes no more directions, so that delta is at least some 9e-7.
 constexpr std::int64_t kMostDirections = 500'000;
 /// Directions of one refining pass: few enough that the kernel's next width profits from them, and a pass is not
 /// waiting for memory.

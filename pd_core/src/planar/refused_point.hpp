@@ -12,7 +12,7 @@
 
 namespace pd::detail {
 
-/// non_finite, out_of_range, or nothing.
+/// Returns non_finite, out_of_range, or nothing.
 [[nodiscard]] inline std::optional<Error> refused_point(const Point2& x, const std::string& where) {
   for (const double c : x) {
     if (!std::isfinite(c)) return Error{ErrorCode::non_finite, "two finite numbers are needed", where};
@@ -21,7 +21,7 @@ namespace pd::detail {
   return std::nullopt;
 }
 
-/// As above, and zero_direction.
+/// Returns zero_direction, a refusal of `refused_point`, or nothing.
 [[nodiscard]] inline std::optional<Error> refused_direction(const Point2& d, const std::string& where) {
   if (auto refused = refused_point(d, where)) return refused;
   if (d[0] != 0 || d[1] != 0) return std::nullopt;
