@@ -3,8 +3,9 @@
     build_cost.py ROOT LIMITS COMPILER [FLAG...]
 
 LIMITS has one line for each sample: a source or a header below ROOT, and the most that it may take, in units of the reference beside
-it. Times are user seconds of the compiler itself, so a busy machine and a compiler cache do not change the ratios. The exit code is 1
-where a sample takes more.
+it. Times are user seconds of the compiler itself, so a compiler cache does not change the ratios. A machine that other work shares can
+slow one compilation by half, so a sample above its limit is compiled again, right after a reference of its own, and its lowest ratio
+counts. The exit code is 1 where a sample takes more in each of these rounds.
 """
 
 import os
@@ -13,6 +14,8 @@ import statistics
 import subprocess
 import sys
 import tempfile
+
+ROUNDS = 5  # the most compilations of one sample
 
 
 def user_seconds(command):
@@ -42,13 +45,18 @@ def main():
         for name, _ in samples:
             reference.append(compile_time(here / "build_cost_reference.cpp"))
             seconds.append(compile_time(root / name))
-    unit = statistics.median(reference)
-    print(f"reference {unit:.2f} s (from {min(reference):.2f} to {max(reference):.2f})")
-    dear = 0
-    for (name, limit), taken in zip(samples, seconds):
-        above = taken > float(limit) * unit
-        dear += above
-        print(f"{taken:6.2f} s {taken / unit:6.2f} of at most {limit}  {name}{'  ABOVE' if above else ''}")
+        unit = statistics.median(reference)
+        print(f"reference {unit:.2f} s (from {min(reference):.2f} to {max(reference):.2f})")
+        dear = 0
+        for (name, limit), taken in zip(samples, seconds):
+            ratios = [taken / unit]
+            while min(ratios) > float(limit) and len(ratios) < ROUNDS:
+                beside = compile_time(here / "build_cost_reference.cpp")
+                ratios.append(compile_time(root / name) / beside)
+            above = min(ratios) > float(limit)
+            dear += above
+            rounds = f" (lowest of {len(ratios)} rounds, first {ratios[0]:.2f})" if len(ratios) > 1 else ""
+            print(f"{min(ratios):6.2f} of at most {limit}  {name}{rounds}{'  ABOVE' if above else ''}")
     if dear > 0:
         raise SystemExit(f"{dear} samples take longer to compile than {limits} allows")
 
