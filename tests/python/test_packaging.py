@@ -4,6 +4,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import tarfile
 from xml.etree import ElementTree
 
 import pytest
@@ -23,6 +24,29 @@ def test_colcon_finds_a_package_of_the_same_version():
     assert {"eigen", "boost"} <= {each.text for each in package.findall("depend")}
 
 
+def test_the_archive_of_sources_holds_all_that_cmake_reads(tmp_path):
+    def run(*command, cwd):
+        done = subprocess.run([str(part) for part in command], cwd=cwd, capture_output=True, text=True)
+        assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
+        return done.stdout
+
+    run(sys.executable, "-m", "build", "--no-isolation", "--sdist", "--outdir", tmp_path, TOP, cwd=TOP)
+    archive, = tmp_path.glob("pdepth-*.tar.gz")
+    with tarfile.open(archive) as opened:
+        opened.extractall(tmp_path)
+    tree = tmp_path / archive.name.removesuffix(".tar.gz")
+    run("cmake", "-S", tree, "-B", tree / "build/python", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DPD_WITH_BULLET=OFF",
+        "-DPD_WITH_TESTS=OFF", "-DPD_WITH_BENCH=OFF", "-DPD_SELF_CONTAINED=ON", f"-DPython_EXECUTABLE={sys.executable}", cwd=tree)
+    # CMake looks for sources by pattern and would not miss one that is not there.
+    if (TOP / ".git").exists():
+        sources = run("git", "ls-files", *(f"{room}/*.{kind}" for room in ("pd_core", "engine_glue", "render", "demos")
+                                           for kind in ("hpp", "cpp", "h", "cmake", "js", "css", "json")), cwd=TOP).split()
+        missing = [name for name in sources if not (tree / name).exists() and not name.startswith("pd_core/docs/")]
+        assert len(sources) > 700 and missing == []
+        head = run("git", "rev-parse", "HEAD", cwd=TOP)
+        assert head.startswith((tree / "build/commit").read_text().split("-")[0].strip())
+
+
 @pytest.mark.skipif(not (BUILT / "CMakeCache.txt").exists(), reason="needs the objects of build/release")
 def test_a_wheel_and_pip_install_run_without_the_source_tree(tmp_path):
     environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
@@ -35,7 +59,7 @@ def test_a_wheel_and_pip_install_run_without_the_source_tree(tmp_path):
 
     run(sys.executable, "-m", "venv", "--system-site-packages", tmp_path / "venv")
     python = tmp_path / "venv" / "bin" / "python"
-    run(sys.executable, "-m", "build", "--no-isolation", "--wheel", "--outdir", tmp_path, TOP)
+    run(sys.executable, "-m", "build", "--no-isolation", "--outdir", tmp_path, TOP)  # the wheel is made from the archive of sources
     wheel, = tmp_path.glob("pdepth-*.whl")
     assert "-linux_" in wheel.name
     script = ("import pdepth; print(pdepth.__file__, pdepth.depth(pdepth.Sphere(1), pdepth.Sphere(1),"
