@@ -5,11 +5,11 @@
 # libraries by paths that are not there, so it is not used; where pkg-config is missing, CMake's FindBullet serves the float
 # build and a search by name the double one.
 #
-#   pdepth_find_bullet(DOUBLE <bool> [GLOBAL] [QUIET])
-# sets pdepth_bullet_FOUND in the caller's scope; without QUIET a missing Bullet stops the configuration.
+#   pdepth_find_bullet(DOUBLE <bool> [GLOBAL])
+# sets pdepth_bullet_FOUND in the caller's scope.
 
 function(pdepth_find_bullet)
-  cmake_parse_arguments(arg "GLOBAL;QUIET" "DOUBLE" "" ${ARGN})
+  cmake_parse_arguments(arg "GLOBAL" "DOUBLE" "" ${ARGN})
   set(pdepth_bullet_FOUND TRUE PARENT_SCOPE)
   if(TARGET pdepth::bullet)
     return()
@@ -54,10 +54,6 @@ function(pdepth_find_bullet)
   endif()
   if(NOT libraries OR NOT include_dirs OR "${libraries};${include_dirs}" MATCHES "NOTFOUND")
     set(pdepth_bullet_FOUND FALSE PARENT_SCOPE)
-    if(NOT arg_QUIET)
-      message(FATAL_ERROR "Bullet (${module}) was not found: install libbullet-dev, or leave engine_glue out with "
-                          "-DPD_WITH_BULLET=OFF")
-    endif()
     return()
   endif()
   add_library(pdepth::bullet INTERFACE IMPORTED ${global})
