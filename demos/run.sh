@@ -11,7 +11,8 @@ steps=()
 if [[ $# -eq 2 && $1 == --steps && $2 =~ ^[1-9][0-9]*$ ]]; then
   steps=(--steps "$2")
 elif (($# > 0)); then
-  sed -n '2,5s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2
+  pd_no_options "$@"
+  pd_usage >&2
   exit 2
 fi
 

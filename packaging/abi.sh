@@ -8,8 +8,10 @@
 # The exit code is 0 where nothing that a program may use has gone or changed; new functions are no change. 1 where something has:
 # then the minor version has to grow (CMakeLists.txt), and with it the name of the library and its package.
 set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/../pd_core/cmake/debian_packages.sh"
+pd_no_options "$@"
 if (($# != 2)); then
-  sed -n '2,9s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2
+  pd_usage >&2
   exit 2
 fi
 command -v abidiff >/dev/null || { printf 'abidiff is missing: apt-get install abigail-tools\n' >&2 && exit 2; }

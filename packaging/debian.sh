@@ -12,11 +12,12 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source pd_core/cmake/debian_packages.sh
 
+[[ ${1-} == --binary-arch ]] || pd_no_options "$@"
 build=(--build=full)
 if [[ ${1-} == --binary-arch ]]; then
   build=(--build=any)
 elif (($# > 0)); then
-  sed -n '2,10s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2
+  pd_usage >&2
   exit 2
 fi
 
@@ -43,7 +44,7 @@ export DEB_BUILD_OPTIONS="parallel=${PD_JOBS:-$(nproc)} ${DEB_BUILD_OPTIONS-}"
 if command -v ccache >/dev/null; then
   export PD_CMAKE_OPTIONS="${PD_CMAKE_OPTIONS-} -DCMAKE_CXX_COMPILER_LAUNCHER=ccache"
   export CCACHE_SLOPPINESS="${CCACHE_SLOPPINESS:-pch_defines,time_macros}" CCACHE_BASEDIR="${tree}" CCACHE_NOHASHDIR=1
-  export CCACHE_DIR="${CCACHE_DIR:-${HOME}/.cache/ccache}"
+  export CCACHE_DIR="${CCACHE_DIR:-${HOME-/root}/.cache/ccache}"
 fi
 (cd "${tree}" && dpkg-buildpackage --no-sign --no-check-builddeps --no-pre-clean "${build[@]}")
 printf '\n== hardening (SECURITY.md)\n'

@@ -4,10 +4,13 @@
 #
 #   packaging/hardening.sh FILE|FOLDER...
 #
-# It reads ELF files with readelf, and in a folder all programs and shared libraries. It ends with 1 if something is missing.
+# It reads ELF files with readelf, and in a folder all programs and shared libraries. It ends with 1 if something is missing,
+# and with 2 where there is nothing to check.
 # packaging/debian.sh runs it on what it has built.
 set -euo pipefail
-(($# > 0)) || { sed -n '2,7s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2; exit 2; }
+source "$(dirname "${BASH_SOURCE[0]}")/../pd_core/cmake/debian_packages.sh"
+pd_no_options "$@"
+(($# > 0)) || { pd_usage >&2; exit 2; }
 
 missing_of() { # one word for each promise that the file breaks
   local dynamic symbols segments
@@ -25,11 +28,17 @@ missing_of() { # one word for each promise that the file breaks
 }
 
 status=0
+checked=0
 while IFS= read -r -d '' file; do
   [[ $(head -c 4 "${file}" | od -An -c | tr -d ' ') == '177ELF' ]] || continue
   readelf -h "${file}" 2>/dev/null | grep -qE 'Type: +(DYN|EXEC)' || continue
+  checked=$((checked + 1))
   missing=$(missing_of "${file}")
   printf '%-60s %s\n' "${file##*/}" "${missing:+misses}${missing:-holds}"
   [[ -z ${missing} ]] || status=1
 done < <(find "$@" -type f -print0)
+if ((checked == 0)); then
+  printf 'no program and no shared library: %s\n' "$*" >&2
+  exit 2
+fi
 exit "${status}"

@@ -11,6 +11,8 @@
 # `pdepth accuracy` was taken on a quiet machine. After: the tag, the files, and a new section "unreleased" in CHANGELOG.md.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+source pd_core/cmake/debian_packages.sh
+pd_no_options "$@"
 version=$(sed -n 's/^project(pdepth VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt)
 
 faults=0
@@ -45,7 +47,7 @@ build() {
   mkdir -p "${out}"
   packaging/debian.sh
   find build/debian -maxdepth 1 -type f -exec cp {} "${out}" \;
-  python3 -m build --no-isolation --wheel --outdir "${out}" .
+  /usr/bin/python3 -m build --no-isolation --wheel --outdir "${out}" .
   mkdocs build --quiet --strict -f pd_core/docs/mkdocs.yml -d "${out}/site"
   tar -C "${out}" -czf "${out}/pdepth-${version}-site.tar.gz" site
   rm -rf "${out}/site"
@@ -62,7 +64,7 @@ case ${1-} in
   check) check ;;
   build) check && build "${2-}" ;;
   *)
-    sed -n '2,12s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2
+    pd_usage >&2
     exit 2
     ;;
 esac

@@ -11,6 +11,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source pd_core/cmake/debian_packages.sh
+pd_no_options "$@"
 source packaging/bare_system.sh
 pd_require_packages mmdebstrap lintian dpkg-dev
 out=${PWD}/build/debian
@@ -84,7 +85,7 @@ parts=("$@")
 for part in "${parts[@]}"; do
   case ${part} in
     lintian | audit | tests) "try_${part}" ;;
-    *) sed -n '2,10s/^# \{0,1\}//p' "${BASH_SOURCE[0]}" >&2 && exit 2 ;;
+    *) pd_usage >&2 && exit 2 ;;
   esac
 done
 last_line

@@ -6,6 +6,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source pd_core/cmake/debian_packages.sh
+pd_no_options "$@"
 source packaging/bare_system.sh
 pd_require_packages mmdebstrap
 wheel=${1-}

@@ -9,6 +9,8 @@
 # SSE2, since the order in which it adds the terms of a product depends on the size of its vectors.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+source pd_core/cmake/debian_packages.sh
+pd_no_options "$@"
 for tool in em++ cmake ninja node; do
   command -v "${tool}" >/dev/null || { echo "${tool} is not installed"; exit 1; }
 done

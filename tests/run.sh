@@ -7,6 +7,9 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source pd_core/cmake/debian_packages.sh
+for option in "$@"; do
+  [[ ${option} == -D?* ]] || { pd_no_options "${option}" && pd_usage >&2 && exit 2; }
+done
 
 # heading WORDS: what begins now, and when, so that a log tells what takes long.
 heading() {

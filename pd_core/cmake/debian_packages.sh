@@ -1,4 +1,22 @@
-# Sourced by demos/run.sh and tests/run.sh: the Debian 12 packages that the project needs, by name, and how they come.
+# Sourced by the scripts of demos, tests and packaging: their --help, and the Debian 12 packages that the project needs, by name.
+
+# Prints the comment at the top of the script that runs.
+pd_usage() {
+  local script=$0
+  [[ -r ${script} ]] || script=${OLDPWD}/${script}
+  awk 'NR > 1 { if (!/^#/) exit; sub(/^# ?/, ""); print }' "${script}"
+}
+
+# pd_no_options ARGUMENT...: answers --help and ends; ends with the exit code of bad usage at any other option.
+pd_no_options() {
+  local argument
+  for argument in "$@"; do
+    case ${argument} in
+      -h | --help) pd_usage; exit 0 ;;
+      -*) printf '%s is no option here\n' "${argument}" >&2; pd_usage >&2; exit 2 ;;
+    esac
+  done
+}
 
 pd_build_packages=(
   g++ cmake ninja-build pkgconf libeigen3-dev libboost-dev libbullet-dev libosmesa6-dev libgl-dev libegl-dev libpng-dev

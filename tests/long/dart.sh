@@ -6,6 +6,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 source pd_core/cmake/debian_packages.sh
+pd_no_options "$@"
 pd_use_ccache
 pd_require_packages "${pd_build_packages[@]}" libgtest-dev libqhull-dev libdart-dev \
   python3-dartpy python3-dev pybind11-dev

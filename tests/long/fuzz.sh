@@ -10,6 +10,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 source pd_core/cmake/debian_packages.sh
+pd_no_options "$@"
 pd_use_ccache
 
 engine=${ENGINE:-libfuzzer}

@@ -8,6 +8,8 @@
 # The build must have test_numeric, answer_hash and oracle_pairs. The last run stands in last_memcheck.txt.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+source pd_core/cmake/debian_packages.sh
+pd_no_options "$@"
 build=$(realpath "${1:-build/release}")
 work=$(mktemp -d)
 trap 'rm -rf "${work}"' EXIT

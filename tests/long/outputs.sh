@@ -5,6 +5,8 @@
 #
 # A disk of 64 KB needs the right to mount; without it that part says that it was left out.
 set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/../../pd_core/cmake/debian_packages.sh"
+pd_no_options "$@"
 program=$(realpath "${1:-build/release/pdepth}")
 rounds=${2:-40}
 folder=$(mktemp -d)

@@ -9,6 +9,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 source pd_core/cmake/debian_packages.sh
+pd_no_options "$@"
 pd_use_ccache
 
 sample=tests/bench/results/answer_hash_sample.txt
@@ -20,6 +21,7 @@ aarch64=(-DCMAKE_SYSTEM_NAME=Linux -DCMAKE_SYSTEM_PROCESSOR=aarch64
 
 # row NAME COMPILER FLAGS RUNNER [CMAKE_OPTION...]
 row() {
+  names+=("$1")
   local name=$1 compiler=$2 flags=$3 runner=$4 folder=build/bits/$1
   shift 4
   ((${#wanted[@]} == 0)) || [[ " ${wanted[*]} " == *" ${name} "* ]] || return 0
@@ -40,6 +42,7 @@ row() {
 }
 
 wanted=("$@")
+names=()
 failed=0
 mkdir -p build/bits
 {
@@ -51,6 +54,9 @@ mkdir -p build/bits
   row clang-19-o3 clang++-19 -O3 ''
   row clang-19-o2 clang++-19 -O2 ''
   row aarch64-gcc-o3 aarch64-linux-gnu-g++ -O3 'qemu-aarch64 -L /usr/aarch64-linux-gnu' "${aarch64[@]}"
+  for name in "${wanted[@]}"; do
+    [[ " ${names[*]} " == *" ${name} "* ]] || { failed=$((failed + 1)); printf '%s: no such row; there are %s\n' "${name}" "${names[*]}"; }
+  done
   printf '%d rows differ or could not be asked\n' "${failed}"
 } | tee build/bits/last.txt
 ((${#wanted[@]} > 0)) || cp build/bits/last.txt tests/long/last_same_bits.txt

@@ -7,6 +7,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 source pd_core/cmake/debian_packages.sh
+pd_no_options "$@"
 pd_require_packages "${pd_build_packages[@]}" clang-14
 pd_use_ccache
 
