@@ -10,7 +10,6 @@
 #pragma once
 
 #include "pd/depth/depth_answer.hpp"
-#include "pd/numeric/language.hpp"
 #include "pd/shape/convex_shape.hpp"
 
 namespace pd {

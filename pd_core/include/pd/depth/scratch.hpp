@@ -4,6 +4,8 @@
 
 #include <memory>
 
+#include "pd/numeric/language.hpp"
+
 namespace pd {
 
 namespace detail {

@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <memory>
 
+#include "pd/numeric/language.hpp"
+
 namespace pd {
 
 namespace detail {

@@ -7,6 +7,8 @@
 
 #include <Eigen/Core>
 
+#include "pd/numeric/language.hpp"
+
 namespace pd::dimension {
 
 inline constexpr int kMinDimension = 2;

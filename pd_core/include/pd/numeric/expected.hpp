@@ -11,6 +11,8 @@
 #include <utility>
 #include <variant>
 
+#include "pd/numeric/language.hpp"
+
 namespace pd {
 
 /// Why an input was refused. The names are those of the line protocol (`to_string`).

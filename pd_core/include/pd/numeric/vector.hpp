@@ -5,6 +5,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>  // the cross product
 
+#include "pd/numeric/language.hpp"
+
 namespace pd {
 
 /// A point or direction in R^3. Neither type is a "fixed-size vectorizable" Eigen type (24 and 72 bytes), so their size

@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "pd/numeric/language.hpp"
+
 namespace pd {
 
 /// The text goes into another file of the same folder, which gets the name once it is complete. A reader never sees a

@@ -5,6 +5,8 @@
 #include <array>
 #include <string_view>
 
+#include "pd/numeric/language.hpp"
+
 namespace pd {
 
 /// A point or vector of the plane.

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "pd/numeric/language.hpp"
+
 namespace pd {
 
 /// A face of one body: a vertex id, the two ids of an edge, or a facet.

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <iterator>
 
+#include "pd/numeric/language.hpp"
+
 namespace pd {
 
 /// How many bytes an index takes. Every index is read as four bytes, of which the others are dropped without a branch.

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "pd/numeric/language.hpp"
+
 namespace pd {
 
 /// The memories that a step asks for take the place of last step's. All others are forgotten, so that there are never
