@@ -83,6 +83,16 @@ if(WAY STREQUAL "package")
   if(result EQUAL 0 OR NOT output MATCHES "component[ \n]+teapot.*which[ \n]+has:[ \n]+pd_core")
     message(FATAL_ERROR "the component teapot was not refused: ${output}")
   endif()
+  # Who asks for no component by name gets those whose packages are here.
+  run(${configure} -B ${WORK}/fewer_packages -DWANTED_VERSION=0.1 -DCOMPONENTS= -DCMAKE_DISABLE_FIND_PACKAGE_PNG=ON
+      -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON)
+  if("render" IN_LIST COMPONENTS)
+    execute_process(COMMAND ${configure} -B ${WORK}/refused -DWANTED_VERSION=0.1 -DCOMPONENTS=render -DCMAKE_DISABLE_FIND_PACKAGE_PNG=ON
+                    RESULT_VARIABLE result OUTPUT_QUIET ERROR_VARIABLE output)
+    if(result EQUAL 0 OR NOT output MATCHES "component[ \n]+render[ \n]+needs[ \n]+libpng")
+      message(FATAL_ERROR "render without libpng was not refused by name: ${output}")
+    endif()
+  endif()
   if("engine_glue" IN_LIST COMPONENTS)
     run(${WORK}/build/stranger_world)
     if(NOT output MATCHES "^[1-9][0-9]* exact answers, the die rests at 1\\.[01]")
