@@ -231,6 +231,39 @@ TEST(TimeOfImpact, StartsWithinTheTolerance) {
   EXPECT_LE(hit.time, 1e-10);
 }
 
+// The bodies meet early in a duration whose end lies far away, so that doubles tell little there.
+TEST(TimeOfImpact, TellsAsMuchWhateverTheDuration) {
+  const ConvexShape box(ConvexPolytope::box(Vec3(1, 1, 1)).value());
+  const MovingShape still{{&box, Pose()}, {}};
+  pd::Scratch scratch;
+  for (const double speed : {1.0, 1e4, 1e6, 1e20}) {
+    for (const double duration : {5.0, 1e3, 1e9}) {
+      SCOPED_TRACE(testing::Message() << speed << " for " << duration);
+      const auto hit =
+          pd::time_of_impact({{&box, at(-4, 0.3, 0)}, {Vec3(speed, 0, 0), Vec3::Zero()}}, still, duration, scratch);
+      ASSERT_TRUE(hit.hit);
+      EXPECT_TRUE(hit.reached);
+      EXPECT_NEAR(hit.time, 2 / speed, 2e-9 / speed);
+      EXPECT_LE(hit.contact.distance, 1e-9);
+      EXPECT_EQ(hit.certified, hit.time);
+      const auto past =
+          pd::time_of_impact({{&box, at(-4, 2.3, 0)}, {Vec3(speed, 0, 0), Vec3::Zero()}}, still, duration, scratch);
+      EXPECT_FALSE(past.hit);
+      EXPECT_EQ(past.certified, duration);
+    }
+  }
+  // A turning body sees each direction move, and meets after a hundred turns.
+  const ConvexShape bar(ConvexPolytope::box(Vec3(1, 0.1, 0.1)).value());
+  const MovingShape spinning{{&bar, at(-102, 0, 0)}, {Vec3(1, 0, 0), Vec3(0, 0, 6)}};
+  const auto early = pd::time_of_impact(spinning, still, 110, scratch);
+  ASSERT_TRUE(early.hit);
+  EXPECT_TRUE(early.reached);
+  const auto late = pd::time_of_impact(spinning, still, 1e9, scratch);
+  ASSERT_TRUE(late.hit);
+  EXPECT_TRUE(late.reached);
+  EXPECT_NEAR(late.time, early.time, 1e-8);
+}
+
 TEST(TimeOfImpact, SaysWhereDoublesCannotTell) {
   // Coordinates of 1e9 are 1e-7 apart: a gap of 1e-12 cannot be had.
   const ConvexShape box(ConvexPolytope::box(Vec3(1, 1, 1)).value());

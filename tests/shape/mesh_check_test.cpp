@@ -283,6 +283,12 @@ TEST(MeshCheck, RefusesWhatIsNoMesh) {
   Mesh mesh = box(0, 1);
   mesh.corners[3] = 8;
   EXPECT_EQ(code(mesh), "bad_faces");
+  EXPECT_EQ(check_mesh({mesh.points, mesh.offsets, mesh.corners}).error().message, "vertex index 8 is outside 0..7");
+  mesh = box(0, 1);
+  mesh.points[5].x() = -2e300;
+  EXPECT_EQ(code(mesh), "out_of_range");
+  EXPECT_EQ(check_mesh({mesh.points, mesh.offsets, mesh.corners}).error().message,
+            "2e+300 is beyond the largest coordinate 1e+300");
   mesh = box(0, 1);
   mesh.offsets[1] = 9;
   EXPECT_EQ(code(mesh), "bad_faces");

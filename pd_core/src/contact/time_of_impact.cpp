@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
+#include <utility>
 
 #include "contact/separation_along.hpp"
 #include "numeric/floating_point_guard.hpp"
@@ -22,13 +24,20 @@ constexpr int kSpansPerNormal = 8;
 constexpr int kShortenings = 24;
 /// A direction that proves this share of what is left of the duration is followed alone.
 constexpr double kFarEnough = 0.25;
+/// A horizon that doubles cannot resolve is cut to this share of its span at most. It grows by the inverse.
+constexpr double kShorterHorizon = 1.0 / 16;
 
 /// The pair at a time: the distance and what follows from its normal.
 class MovingPair {
  public:
   MovingPair(const MovingShape& a, const MovingShape& b, double duration, Scratch& scratch,
              const TimeOfImpactSettings& settings)
-      : a_(a), b_(b), duration_(duration), scratch_(scratch), settings_(settings), separation_(a, b, duration) {}
+      : a_(a),
+        b_(b),
+        scratch_(scratch),
+        settings_(settings),
+        separation_(std::in_place, a, b, duration),
+        horizon_(duration) {}
 
   /// Starts with the pair's answer at time 0.
   void begin() {
@@ -47,9 +56,27 @@ class MovingPair {
   /// below, inside as well as outside.
   [[nodiscard]] double clearance() const { return settings_.allowed_depth + answer_.signed_distance(); }
 
-  /// The latest time after `time` up to which the present normal proves the pair apart: the end of the duration, or one
-  /// where what is left along the normal is about `goal`, or where the normal is worth no more. The normal stands
-  /// still, or turns with one of the bodies.
+  /// Proofs reach up to this time. The rounding that they allow for grows with it.
+  [[nodiscard]] double horizon() const { return horizon_; }
+
+  /// Moves the horizon nearer to `time`: to some times what the pair needs to meet. False if that leaves as much
+  /// rounding as before.
+  [[nodiscard]] bool shorten_horizon(double time) {
+    const double closing = separation_->closing_bound({answer_.normal, time, Frame::common});
+    const double meeting = closing > 0 ? 8 * clearance() / closing : HUGE_VAL;
+    const double horizon = time + std::min(meeting, kShorterHorizon * (horizon_ - time));
+    if (!(horizon > time && horizon < horizon_)) return false;
+    const double before = rounding();
+    set_horizon(horizon);
+    return rounding() <= 0.5 * before;
+  }
+
+  /// Moves the horizon away again once the pair is proved apart up to it.
+  void lengthen_horizon(double duration) { set_horizon(std::min(duration, horizon_ / kShorterHorizon)); }
+
+  /// The latest time after `time` up to which the present normal proves the pair apart: the horizon, or one where
+  /// what is left along the normal is about `goal`, or where the normal is worth no more. The normal stands still, or
+  /// turns with one of the bodies.
   [[nodiscard]] double follow_normal(double time, double goal) {
     struct Lead {
       detail::MovingDirection direction;
@@ -59,10 +86,10 @@ class MovingPair {
     std::size_t count = 0;
     const double now = clearance_along({answer_.normal, time, Frame::common}, time);
     for (const Frame frame : {Frame::common, Frame::a, Frame::b}) {
-      if (frame != Frame::common && !separation_.turns(frame)) continue;
+      if (frame != Frame::common && !separation_->turns(frame)) continue;
       const detail::MovingDirection direction{answer_.normal, time, frame};
-      const double left = clearance_along(direction, duration_);
-      if (left >= 0.5 * goal && detail::apart_throughout(now, left, bulge(frame, duration_ - time))) return duration_;
+      const double left = clearance_along(direction, horizon_);
+      if (left >= 0.5 * goal && detail::apart_throughout(now, left, bulge(frame, horizon_ - time))) return horizon_;
       leads[count++] = {direction, left};
     }
     // The direction with the most left at the end is followed first.
@@ -71,32 +98,37 @@ class MovingPair {
       return x.left != y.left ? x.left > y.left : x.direction.frame < y.direction.frame;
     });
     double latest = time;
-    for (auto lead = leads.begin(); lead != end && latest - time < kFarEnough * (duration_ - time); ++lead) {
+    for (auto lead = leads.begin(); lead != end && latest - time < kFarEnough * (horizon_ - time); ++lead) {
       latest = std::max(latest, follow(lead->direction, goal));
     }
     return latest;
   }
 
-  [[nodiscard]] double rounding() const { return separation_.rounding(); }
+  [[nodiscard]] double rounding() const { return separation_->rounding(); }
   [[nodiscard]] const PenetrationDepth& answer() const { return answer_; }
   [[nodiscard]] int queries() const { return queries_; }
 
  private:
   using Frame = detail::MovingDirection::Frame;
 
+  void set_horizon(double horizon) {
+    separation_.emplace(a_, b_, horizon);
+    horizon_ = horizon;
+  }
+
   [[nodiscard]] double clearance_along(const detail::MovingDirection& direction, double time) {
-    return settings_.allowed_depth + separation_.at(direction, time);
+    return settings_.allowed_depth + separation_->at(direction, time);
   }
 
   /// Returns the m of `apart_throughout`.
-  [[nodiscard]] double bulge(Frame frame, double span) { return 0.5 * separation_.curvature(frame) * span * span; }
+  [[nodiscard]] double bulge(Frame frame, double span) { return 0.5 * separation_->curvature(frame) * span * span; }
 
   /// Does what `follow_normal` does for one direction, from the time `since` on.
   [[nodiscard]] double follow(const detail::MovingDirection& direction, double goal) {
     double time = direction.since;
     double left = clearance_along(direction, time);
     const double worthless = 0.25 * left;
-    for (int i = 0; i < kSpansPerNormal && left > 0 && time < duration_; ++i) {
+    for (int i = 0; i < kSpansPerNormal && left > 0 && time < horizon_; ++i) {
       const double next = one_span(direction, time, left, goal);
       if (!(next > time)) break;
       time = next;
@@ -108,16 +140,16 @@ class MovingPair {
   /// One proved span from `time`, where `left` > 0 is left along the normal. Updates `left`. The span is shortened
   /// until the proof holds; that of first order (Mirtich's) holds for certain.
   [[nodiscard]] double one_span(const detail::MovingDirection& direction, double time, double& left, double goal) {
-    const double bound = separation_.closing_bound(direction);
+    const double bound = separation_->closing_bound(direction);
     // Rounded down: the quotient and the sum with the time.
     const double certain = bound > 0 ? 0.999 * left / bound : HUGE_VAL;
-    double span = duration_ - time;
+    double span = horizon_ - time;
     if (certain >= span) {
-      left = clearance_along(direction, duration_);
-      return duration_;
+      left = clearance_along(direction, horizon_);
+      return horizon_;
     }
     for (int k = 0; k < kShortenings && span > certain; ++k) {
-      const double end = k == 0 ? duration_ : time + span;
+      const double end = k == 0 ? horizon_ : time + span;
       const double then = clearance_along(direction, end);
       if (then >= 0.5 * goal) {
         if (detail::apart_throughout(left, then, bulge(direction.frame, end - time))) {
@@ -131,17 +163,17 @@ class MovingPair {
         span *= std::clamp((left - goal) / (left - then), k < 4 ? 1e-3 : 0.1, 0.9);
       }
     }
-    const double end = std::min(time + certain, duration_);
+    const double end = std::min(time + certain, horizon_);
     left = clearance_along(direction, end);
     return end;
   }
 
   const MovingShape& a_;
   const MovingShape& b_;
-  double duration_;
   Scratch& scratch_;
   const TimeOfImpactSettings& settings_;
-  detail::MovingSeparation separation_;
+  std::optional<detail::MovingSeparation> separation_;  ///< emplaced again for each horizon
+  double horizon_;
   PenetrationDepth answer_;
   int queries_ = 0;
 };
@@ -190,12 +222,12 @@ TimeOfImpact time_of_impact(const MovingShape& a, const MovingShape& b, double d
   if (pair.clearance() <= 0) return finish(true, 0, true);
   // A pair that starts closer than the tolerance meets only if it comes closer still.
   const double tolerance = std::min(settings.distance_tolerance, 0.5 * pair.clearance());
-  // What doubles cannot tell from contact at these coordinates.
-  const double unresolved = 8 * pair.rounding();
   for (;;) {
     result.certified = time;
     const double clearance = pair.clearance();
-    if (clearance <= std::max(tolerance, unresolved)) {
+    // What doubles cannot tell from contact at the coordinates of the horizon.
+    if (clearance <= std::max(tolerance, 8 * pair.rounding())) {
+      if (clearance > settings.distance_tolerance && pair.shorten_horizon(time)) continue;
       return finish(true, time, clearance <= settings.distance_tolerance);
     }
     if (pair.queries() >= settings.max_queries) return finish(true, time, false);
@@ -205,7 +237,11 @@ TimeOfImpact time_of_impact(const MovingShape& a, const MovingShape& b, double d
       if (settings.contact_at_end && duration > 0) pair.ask(duration);
       return finish(false, duration, true);
     }
-    if (!(next > time)) return finish(true, time, false);
+    if (!(next > time)) {
+      if (pair.shorten_horizon(time)) continue;
+      return finish(true, time, false);
+    }
+    if (next >= pair.horizon()) pair.lengthen_horizon(duration);
     const double proved = time;
     time = next;
     pair.ask(time);

@@ -77,7 +77,10 @@ Expected<ApproximateSeparation> approximate_separation(const PosedShape& a, cons
   }
   Expected<DirectionGrid> grid =
       direction_grid(settings.grid, std::max(delta - kRoundings, delta / 2), GridExtent::sphere, settings.max_rays);
-  if (!grid) return grid.error();
+  if (!grid) {
+    return Error{grid.error().code, "the rays go to a grid of delta less roundings, and " + grid.error().message,
+                 "delta"};
+  }
 
   detail::PortalHierarchies hierarchies;
   std::array<std::optional<PolyhedralHierarchy>, 2> built;

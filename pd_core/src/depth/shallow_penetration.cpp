@@ -19,7 +19,8 @@ Expected<ShallowPenetration> shallow_penetration(const PosedShape& a, const Pose
   }
   const Expected<DirectionGrid> grid =
       direction_grid(GridKind::geodesic, delta / 4, GridExtent::sphere, max_directions);
-  if (!grid) return grid.error();
+  if (!grid)
+    return Error{grid.error().code, "the rays go to a grid of delta / 4, and " + grid.error().message, "delta"};
   ShallowPenetration result;
   DepthSettings settings;
   settings.bracket = bracket;

@@ -55,7 +55,7 @@ class ExactHull : public GrowingHull<ExactHull, ExactHullFace> {
   void forget(int /*slot*/) const {}
   void measure(Face& f) const;
 
-  unsigned checked_insertions_ = 0;  ///< see validate_after_insertion
+  int checked_insertions_ = 0;  ///< see validate_after_insertion
 };
 
 }  // namespace pd::detail

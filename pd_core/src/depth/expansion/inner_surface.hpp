@@ -185,7 +185,7 @@ class InnerSurface {
   std::vector<double> fan_nx_, fan_ny_, fan_nz_, fan_levels_, fan_keys_;
 
   int nearest_ = 0;
-  unsigned checked_insertions_ = 0;  ///< see validate_after_insertion
+  int checked_insertions_ = 0;  ///< see validate_after_insertion
 
   struct NearVertex {
     double key;  ///< of the nearest face that uses it

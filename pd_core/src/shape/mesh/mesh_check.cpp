@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "numeric/number_text.hpp"
 #include "pd/numeric/predicates.hpp"
 #include "pd/shape/pose.hpp"
 #include "shape/hull/disjoint_sets.hpp"
@@ -19,6 +20,7 @@ namespace {
 using detail::DisjointSets;
 using detail::EdgeUse;
 using detail::FaceTriangle;
+using detail::number_text;
 using detail::WeldedMesh;
 
 std::optional<Error> bad_input(const MeshView& mesh) {
@@ -27,8 +29,11 @@ std::optional<Error> bad_input(const MeshView& mesh) {
     if (!mesh.points[i].allFinite()) {
       return Error{ErrorCode::non_finite, "coordinates must be finite numbers", "vertices[" + std::to_string(i) + "]"};
     }
-    if (mesh.points[i].cwiseAbs().maxCoeff() > kMaxCoordinate) {
-      return Error{ErrorCode::out_of_range, "a coordinate is too large", "vertices[" + std::to_string(i) + "]"};
+    const double largest = mesh.points[i].cwiseAbs().maxCoeff();
+    if (largest > kMaxCoordinate) {
+      return Error{ErrorCode::out_of_range,
+                   number_text(largest) + " is beyond the largest coordinate " + number_text(kMaxCoordinate),
+                   "vertices[" + std::to_string(i) + "]"};
     }
   }
   const auto corners = static_cast<std::int64_t>(mesh.corners.size());
@@ -38,7 +43,9 @@ std::optional<Error> bad_input(const MeshView& mesh) {
   }
   for (std::size_t k = 0; k < mesh.corners.size(); ++k) {
     if (mesh.corners[k] < 0 || static_cast<std::size_t>(mesh.corners[k]) >= mesh.points.size()) {
-      return Error{ErrorCode::bad_faces, "a corner names a point that is not there",
+      return Error{ErrorCode::bad_faces,
+                   "vertex index " + std::to_string(mesh.corners[k]) + " is outside 0.." +
+                       std::to_string(mesh.points.size() - 1),
                    "corners[" + std::to_string(k) + "]"};
     }
   }
