@@ -34,4 +34,11 @@ std::string_view to_string(ErrorCode code) {
   return "unknown";
 }
 
+RefusedValue::RefusedValue(const Error& refusal)
+    : std::logic_error(std::string(to_string(refusal.code)) + (refusal.where.empty() ? "" : " at " + refusal.where) +
+                       ": " + refusal.message),
+      error_(refusal) {}
+
+void detail::throw_refused_value(const Error& error) { throw RefusedValue(error); }
+
 }  // namespace pd

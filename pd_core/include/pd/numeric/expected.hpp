@@ -1,11 +1,13 @@
 /// @file
 /// A value, or a named reason why there is none. Only factories return it: a query on validated types cannot fail.
 ///
-/// std::expected is C++23; this is the small part of it that the library needs, with the same names.
+/// std::expected is C++23; this is the small part of it that the library needs, with the same names. Other than there,
+/// `*` and `->` throw, too, where there is no value.
 #pragma once
 
 #include <cassert>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -42,6 +44,20 @@ struct Error {
   std::string where;
 };
 
+/// Thrown where the value of a refusal is read. `what()` names the code, the place and the message.
+class RefusedValue : public std::logic_error {
+ public:
+  explicit RefusedValue(const Error& refusal);
+  [[nodiscard]] const Error& error() const { return error_; }
+
+ private:
+  Error error_;
+};
+
+namespace detail {
+[[noreturn]] void throw_refused_value(const Error& error);
+}  // namespace detail
+
 template <class T>
 class [[nodiscard]] Expected {
  public:
@@ -51,12 +67,13 @@ class [[nodiscard]] Expected {
   [[nodiscard]] bool has_value() const { return state_.index() == 0; }
   explicit operator bool() const { return has_value(); }
 
+  /// Throws RefusedValue without a value; so do `*` and `->`.
   [[nodiscard]] const T& value() const& {
-    assert(has_value());
+    if (!has_value()) detail::throw_refused_value(error());
     return *std::get_if<0>(&state_);
   }
   [[nodiscard]] T&& value() && {
-    assert(has_value());
+    if (!has_value()) detail::throw_refused_value(error());
     return std::move(*std::get_if<0>(&state_));
   }
   const T& operator*() const& { return value(); }
