@@ -2,6 +2,7 @@
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tarfile
@@ -22,6 +23,25 @@ def test_colcon_finds_a_package_of_the_same_version():
     assert f'version = "{version}"' in (TOP / "pyproject.toml").read_text()
     assert package.find("maintainer").get("email") and package.findtext("license") == "Zlib"
     assert {"eigen", "boost"} <= {each.text for each in package.findall("depend")}
+
+
+def test_the_module_of_a_distribution_starts_the_command_of_its_prefix(tmp_path):
+    module = tmp_path / "lib/python3/dist-packages/pdepth"
+    module.mkdir(parents=True)
+    shutil.copy(TOP / "demos/python/pdepth/_command.py", module)
+    (tmp_path / "bin").mkdir()
+    command = tmp_path / "bin/pdepth"
+
+    def run():
+        return subprocess.run([sys.executable, "-c", "import _command; _command.main()", "depth"], env={"PYTHONPATH": str(module)},
+                              capture_output=True, text=True, timeout=60)
+
+    assert "the module alone" in run().stderr
+    command.write_text("#!/bin/sh\nexec false\n")  # as the console script, which would start itself for ever
+    command.chmod(0o755)
+    assert "the module alone" in run().stderr
+    shutil.copy(shutil.which("echo"), command)
+    assert run().stdout == "depth\n"
 
 
 def test_the_archive_of_sources_holds_all_that_cmake_reads(tmp_path):
