@@ -1,7 +1,9 @@
 // Casts and closest points through the world's broadphase.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "engine_glue/bullet_world.hpp"
 #include "pd/bullet/world_queries.hpp"
@@ -148,6 +150,108 @@ TEST(DistanceTest, TheNearestWithinReach) {
   const auto inside = distance_test(scene.world(), probe, at(1, 0, 0), 0.1);
   ASSERT_TRUE(inside->nearest.has_value());
   EXPECT_NEAR(inside->nearest->distance, -0.25, 1e-6);
+}
+
+/// Counts the triangles that it hands out.
+struct CountedMesh : btBvhTriangleMeshShape {
+  explicit CountedMesh(btStridingMeshInterface* triangles) : btBvhTriangleMeshShape(triangles, true) {}
+  void processAllTriangles(btTriangleCallback* callback, const btVector3& lower,
+                           const btVector3& upper) const override {
+    struct Counter : btTriangleCallback {
+      btTriangleCallback* inner = nullptr;
+      int count = 0;
+      void processTriangle(btVector3* corners, int part, int index) override {
+        ++count;
+        inner->processTriangle(corners, part, index);
+      }
+    } counter;
+    counter.inner = callback;
+    btBvhTriangleMeshShape::processAllTriangles(&counter, lower, upper);
+    handed_out += counter.count;
+  }
+  mutable int handed_out = 0;
+};
+
+/// A bumpy field of 40 x 40 squares of 1 m, two triangles each.
+struct Field {
+  Field() {
+    const auto corner = [](int i, int j) {
+      return btVector3(static_cast<btScalar>(i), static_cast<btScalar>((7 * i + 3 * j) % 5) * btScalar(0.1),
+                       static_cast<btScalar>(j));
+    };
+    for (int i = 0; i < 40; ++i) {
+      for (int j = 0; j < 40; ++j) {
+        add(corner(i, j), corner(i, j + 1), corner(i + 1, j));
+        add(corner(i + 1, j), corner(i, j + 1), corner(i + 1, j + 1));
+      }
+    }
+    mesh = scene.shape<CountedMesh>(&triangles);
+    mesh->setMargin(0);
+    scene.body(mesh, 0, btVector3(0, 0, 0));
+    scene.world().updateAabbs();
+  }
+  void add(const btVector3& a, const btVector3& b, const btVector3& c) {
+    triangles.addTriangle(a, b, c);
+    corners.push_back({a, b, c});
+  }
+  btTriangleMesh triangles;
+  std::vector<std::array<btVector3, 3>> corners;
+  BulletWorld scene;
+  CountedMesh* mesh = nullptr;
+};
+
+TEST(DistanceTest, WhatLiesFartherThanTheAnswerIsNotAsked) {
+  Field field;
+  const btBoxShape probe(btVector3(btScalar(0.3), btScalar(0.1), btScalar(0.2)));
+  for (const double height : {0.7, 1.5, 4.0, 30.0, 400.0}) {
+    SCOPED_TRACE(height);
+    const btTransform pose = at(17.3, height, 22.6, 0.4);
+    // By the answer's own distance: there and no nearer.
+    const auto far = distance_test(field.scene.world(), probe, pose, HUGE_VAL);
+    ASSERT_TRUE(far.has_value() && far->nearest.has_value());
+    const double distance = far->nearest->distance;
+    const auto near = distance_test(field.scene.world(), probe, pose, distance * 1.001 + 1e-6);
+    ASSERT_TRUE(near->nearest.has_value());
+    EXPECT_EQ(near->nearest->distance, distance);
+    EXPECT_FALSE(distance_test(field.scene.world(), probe, pose, distance * 0.999 - 1e-6)->nearest.has_value());
+    EXPECT_LT(distance, height);
+    EXPECT_GT(distance, height - 0.8);
+  }
+  field.mesh->handed_out = 0;
+  ASSERT_TRUE(distance_test(field.scene.world(), probe, at(17.3, 0.7, 22.6, 0.4), HUGE_VAL)->nearest.has_value());
+  EXPECT_GT(field.mesh->handed_out, 0);
+  EXPECT_LT(field.mesh->handed_out, 200) << "of 3,200 triangles";
+}
+
+TEST(SweepTest, AWayAlongAMeshAsksTheTrianglesBesideItAlone) {
+  Field field;
+  const btBoxShape probe(btVector3(btScalar(0.3), btScalar(0.1), btScalar(0.2)));
+  const btTransform from = at(2.2, 1.6, 2.7, 0.4), to = at(37.1, -0.9, 36.6, 1.9);
+  const auto whole = sweep_test(field.scene.world(), probe, from, to);
+  ASSERT_TRUE(whole.has_value() && whole->hit.has_value());
+  EXPECT_GT(field.mesh->handed_out, 0);
+  EXPECT_LT(field.mesh->handed_out, 800) << "of 3,200 triangles";
+  // Each triangle by itself, as a body of its own, and the first of them all.
+  double first = 1;
+  int index = -1;
+  for (int i = 0; i < field.triangles.getNumTriangles(); ++i) {
+    const auto& corners = field.corners[static_cast<std::size_t>(i)];
+    if (std::abs(corners[0].x() - corners[0].z()) > 4) continue;  // the way keeps to the diagonal
+    BulletWorld one;
+    btTriangleMesh triangle;
+    triangle.addTriangle(corners[0], corners[1], corners[2]);
+    auto* mesh = one.shape<btBvhTriangleMeshShape>(&triangle, true);
+    mesh->setMargin(0);
+    one.body(mesh, 0, btVector3(0, 0, 0));
+    one.world().updateAabbs();
+    const auto hit = sweep_test(one.world(), probe, from, to)->hit;
+    if (hit && hit->fraction < first) {
+      first = hit->fraction;
+      index = i;
+    }
+  }
+  EXPECT_NEAR(whole->hit->fraction, first, 1e-6);
+  EXPECT_GE(index, 0);
 }
 
 }  // namespace

@@ -1,133 +1,34 @@
 #include "pd/bullet/world_queries.hpp"
 
-#include <BulletCollision/CollisionShapes/btCompoundShape.h>
 #include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <memory>
-#include <string>
+#include <set>
 #include <utility>
-#include <vector>
 
 #include "pd/bullet/scalar.hpp"
-#include "pd/bullet/shape_cache.hpp"
 #include "pd/contact/time_of_impact.hpp"
 #include "pd/depth/scratch.hpp"
 #include "shapes/cached_shape.hpp"
 #include "shapes/compound_children.hpp"
 #include "shapes/moving_body.hpp"
-#include "shapes/triangles_in_box.hpp"
+#include "world/pieces_in_region.hpp"
 
 namespace pd {
 
 namespace {
 
-using Body = std::shared_ptr<const detail::CachedShape>;
 using Box = detail::ChildBox;
-
-Expected<Body> convert(const btConvexShape& shape, BulletShapeCache* cache) {
-  Body body = cache != nullptr ? cache->find(shape, 0) : detail::converted(shape);
-  if (!body->body) return body->refusal;
-  return body;
-}
-
-/// A convex piece of an object.
-struct Piece {
-  Body body;
-  btTransform pose;
-  int part;
-  int index;
-};
-
-/// Around the shape on its way, and as far as it reaches from there.
-struct Region {
-  Box way;
-  Box reached;
-  double diameter;  ///< of the shape, or more
-};
-
-/// The pieces of an object that a region of the world meets. @return false where one has no exact body.
-class Pieces {
- public:
-  Pieces(const Region& region, BulletShapeCache* cache) : region_(region), cache_(cache) {}
-
-  bool add(const btCollisionShape& shape, const btTransform& pose, int part, int index, bool outermost) {
-    const Box box = detail::box_of(shape, pose);
-    if (detail::apart(box, region_.reached, 0)) return true;
-    if (shape.isCompound()) {
-      const auto& compound = static_cast<const btCompoundShape&>(shape);
-      bool all = true;
-      for (int i = 0; i < compound.getNumChildShapes(); ++i) {
-        all = add(*compound.getChildShape(i), pose * compound.getChildTransform(i), -1, outermost ? i : index, false) &&
-              all;
-      }
-      return all;
-    }
-    if (shape.getShapeType() == STATIC_PLANE_PROXYTYPE) {
-      add_plane(static_cast<const btStaticPlaneShape&>(shape), pose);
-      return true;
-    }
-    if (shape.isConcave()) {
-      add_triangles(static_cast<const btConcaveShape&>(shape), pose, box);
-      return true;
-    }
-    if (!shape.isConvex()) return false;
-    auto body = convert(static_cast<const btConvexShape&>(shape), cache_);
-    if (!body) return false;
-    pieces.push_back({std::move(body).value(), pose, part, index});
-    return true;
-  }
-
-  std::vector<Piece> pieces;
-
- private:
-  /// @param own  the shape's box in the world. A region may be so wide that its middle loses the shape.
-  void add_triangles(const btConcaveShape& shape, const btTransform& pose, const Box& own) {
-    btVector3 lower = region_.reached.lower, upper = region_.reached.upper;
-    lower.setMax(own.lower);
-    upper.setMin(own.upper);
-    // The box of the box in the shape's frame, wider by what these sums are rounded by.
-    const btScalar rounded = 8 * SIMD_EPSILON * std::max({lower.length(), upper.length(), pose.getOrigin().length()});
-    const btVector3 middle = pose.invXform(btScalar(0.5) * (lower + upper));
-    const btMatrix3x3 turn = pose.getBasis().transpose().absolute();
-    const btVector3 half = turn * (btScalar(0.5) * (upper - lower)) + btVector3(rounded, rounded, rounded);
-    for (detail::BoxedTriangle& triangle : detail::triangles_in_box(shape, middle - half, middle + half)) {
-      auto body = std::make_shared<detail::CachedShape>();
-      body->body = std::move(triangle.shape);
-      pieces.push_back({std::move(body), pose, triangle.part, triangle.index});
-    }
-  }
-
-  /// The part of a plane below the way, as one triangle of doubles. Bullet's triangles of floats lie off the plane by a
-  /// share of the box's size.
-  void add_plane(const btStaticPlaneShape& plane, const btTransform& pose) {
-    const Vec3 lower = to_pd(region_.way.lower), upper = to_pd(region_.way.upper);
-    const Pose placed = to_pd(pose);
-    const Vec3 middle = placed.rotation().transpose() * (0.5 * (lower + upper) - placed.translation());
-    const Vec3 normal = to_pd(plane.getPlaneNormal()).normalized();
-    const Vec3 foot = middle - (normal.dot(middle) - static_cast<double>(plane.getPlaneConstant())) * normal;
-    const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u);
-    const Vec3 half = 0.5 * (upper - lower);
-    const auto width = [&](const Vec3& axis) { return (placed.rotation() * axis).cwiseAbs().dot(half); };
-    // No way past an edge is as short as the way out along the normal.
-    const double radius = 4 * (width(u) + width(v) + region_.diameter);
-    const double height = std::sqrt(3.0);
-    const std::array corners{Vec3(foot - radius * u - height * radius * v),
-                             Vec3(foot - radius * u + height * radius * v), Vec3(foot + 2 * radius * u)};
-    auto triangle = ConvexPolytope::from_points(corners);
-    if (!triangle) return;
-    auto body = std::make_shared<detail::CachedShape>();
-    body->body = std::make_shared<const ConvexShape>(std::move(triangle).value());
-    pieces.push_back({std::move(body), pose, 0, 0});
-  }
-
-  const Region& region_;
-  BulletShapeCache* cache_;
-};
+using detail::Candidate;
+using detail::kRounded;
+using detail::Piece;
+using detail::Pieces;
+using detail::Region;
+using Body = std::shared_ptr<const detail::CachedShape>;
 
 /// Every object whose box in the broadphase meets a box.
 class Neighbours : public btBroadphaseAabbCallback {
@@ -175,6 +76,13 @@ Box box_around(const btConvexShape& shape, const btTransform& from, const btTran
   return widened(box, margin);
 }
 
+bool holds(const Box& box, const btBroadphaseProxy& proxy) {
+  for (int k = 0; k < 3; ++k) {
+    if (!(box.lower[k] <= proxy.m_aabbMin[k] && proxy.m_aabbMax[k] <= box.upper[k])) return false;
+  }
+  return true;
+}
+
 double diameter(const btConvexShape& shape, const btTransform& pose) {
   const Box box = detail::box_of(shape, pose);
   return to_pd(box.upper - box.lower).norm();
@@ -190,45 +98,6 @@ std::optional<Error> refusal(const btTransform& from, const btTransform& to, con
   return std::nullopt;
 }
 
-/// A shape on its way through the world.
-class Cast {
- public:
-  Cast(const Body& body, const btTransform& from, const btTransform& to, double tolerance)
-      : body_(body), from_(to_pd(from)), motion_(detail::motion_between(from, to, 1)) {
-    settings_.distance_tolerance = tolerance;
-    settings_.contact_at_end = false;
-    settings_.depth.bracket = Bracket::certified;
-  }
-
-  /// How far a point leaves the chord between its ends at most: a turning one by r (1 - cos(turn / 2)).
-  [[nodiscard]] double bulge() const {
-    const double radius = bounding_radius(body_->sharp ? *body_->sharp : *body_->body);
-    return radius * (1 - std::cos(0.5 * motion_.angular_velocity.norm()));
-  }
-
-  /// The first hit of one object before `limit`, if there is one.
-  std::optional<SweepHit> first_hit(const btCollisionObject& object, const std::vector<Piece>& pieces, double limit) {
-    std::optional<SweepHit> best;
-    for (const Piece& piece : pieces) {
-      const TimeOfImpact found = time_of_impact({{&body_->beside(*piece.body), from_}, motion_},
-                                                {{&piece.body->beside(*body_), to_pd(piece.pose)}, {}},
-                                                best ? best->fraction : limit, scratch_, settings_);
-      if (!found.hit || !(found.time < (best ? best->fraction : limit))) continue;
-      best.emplace();
-      fill(*best, object, piece, found.contact);
-      best->fraction = found.time;
-    }
-    return best;
-  }
-
- private:
-  const Body& body_;
-  Pose from_;
-  RigidMotion motion_;
-  TimeOfImpactSettings settings_;
-  Scratch scratch_;
-};
-
 /// A question to a whole world.
 struct Sweep {
   btCollisionWorld& world;
@@ -238,30 +107,199 @@ struct Sweep {
   const WorldQuerySettings& settings;
 };
 
+/// A shape on its way through the world. Times are shares of the way.
+class Cast {
+ public:
+  Cast(const Sweep& sweep, Body body)
+      : sweep_(sweep),
+        body_(std::move(body)),
+        start_(to_pd(sweep.from)),
+        motion_(detail::motion_between(sweep.from, sweep.to, 1)) {
+    settings_.distance_tolerance = sweep.settings.tolerance;
+    settings_.contact_at_end = false;
+    settings_.depth.bracket = Bracket::certified;
+    length_ = motion_.linear_velocity.norm();
+    diameter_ = diameter(sweep.shape, sweep.from);
+    // How far a point leaves the chord between its ends at most: a turning one by r (1 - cos(turn / 2)).
+    const double radius = bounding_radius(body_->sharp ? *body_->sharp : *body_->body);
+    margin_ = radius * (1 - std::cos(0.5 * motion_.angular_velocity.norm())) + sweep.settings.tolerance;
+  }
+
+  /// Around the shape between two times.
+  [[nodiscard]] Region region(double since, double until) const {
+    double margin = margin_;
+    if (since > 0 || until < 1) {
+      margin += kRounded * (start_.translation().norm() + to_pd(sweep_.to.getOrigin()).norm() + diameter_);
+    }
+    const Box box = box_around(sweep_.shape, at(since), at(until), margin);
+    return {box, box, diameter_};
+  }
+
+  /// The part of the way in which the triangles of a mesh are looked for at once: as long as the shape, or as a small
+  /// share of the mesh.
+  [[nodiscard]] double stretch(const Box& mesh) const {
+    constexpr double kStretches = 256;
+    return std::max(diameter_, to_pd(mesh.upper - mesh.lower).norm() / kStretches) / length_;
+  }
+
+  /// Asks about one piece, which counts if it is hit before `limit`.
+  std::optional<SweepHit> hit(const btCollisionObject& object, const Piece& piece, double limit) {
+    const TimeOfImpact found =
+        time_of_impact({{&body_->beside(*piece.body), start_}, motion_},
+                       {{&piece.body->beside(*body_), to_pd(piece.pose)}, {}}, limit, scratch_, settings_);
+    if (!found.hit || !(found.time < limit)) return std::nullopt;
+    SweepHit result;
+    fill(result, object, piece, found.contact);
+    result.fraction = found.time;
+    return result;
+  }
+
+  [[nodiscard]] BulletShapeCache* cache() const { return sweep_.settings.cache; }
+
+ private:
+  [[nodiscard]] btTransform at(double time) const {
+    if (time <= 0) return sweep_.from;
+    if (time >= 1) return sweep_.to;
+    const Pose pose = pose_at({{nullptr, start_}, motion_}, time);
+    btTransform transform;
+    for (int i = 0; i < 3; ++i) transform.getBasis()[i] = to_bullet(pose.rotation().row(i).transpose());
+    transform.setOrigin(to_bullet(pose.translation()));
+    return transform;
+  }
+
+  const Sweep& sweep_;
+  Body body_;
+  Pose start_;
+  RigidMotion motion_;
+  TimeOfImpactSettings settings_;
+  Scratch scratch_;
+  double length_ = 0;
+  double diameter_ = 0;
+  double margin_ = 0;
+};
+
+/// The first hit of one object before a limit. Along a mesh the way is cut into stretches, the first ones first.
+class FirstHit {
+ public:
+  FirstHit(Cast& cast, const btCollisionObject& object, double limit)
+      : cast_(cast),
+        object_(object),
+        own_(detail::box_of(*object.getCollisionShape(), object.getWorldTransform())),
+        limit_(limit) {
+    const btCollisionShape& shape = *object.getCollisionShape();
+    if (shape.isConcave() && shape.getShapeType() != STATIC_PLANE_PROXYTYPE) stretch_ = cast.stretch(own_);
+    look(0, 1);
+  }
+
+  [[nodiscard]] const std::optional<SweepHit>& best() const { return best_; }
+  /// False where a piece in the way has no exact body.
+  [[nodiscard]] bool answered() const { return answered_; }
+
+ private:
+  void look(double since, double until) {
+    if (since > 0 && limit_ <= since) return;
+    const Region region = cast_.region(since, until);
+    if (detail::apart(own_, region.way, 0)) return;
+    if (until - since > stretch_) {
+      const double middle = 0.5 * (since + until);
+      look(since, middle);
+      look(middle, until);
+      return;
+    }
+    Pieces found(region, cast_.cache());
+    answered_ = found.add(*object_.getCollisionShape(), object_.getWorldTransform(), -1, -1, true) && answered_;
+    for (Candidate& candidate : found.pieces) {
+      const Piece& piece = candidate.piece;
+      // A triangle reaches into several stretches.
+      if (stretch_ < 1 && !asked_.insert({piece.part, piece.index}).second) continue;
+      if (!detail::convert(candidate)) continue;
+      if (auto hit = cast_.hit(object_, piece, limit_)) {
+        limit_ = hit->fraction;
+        best_ = std::move(hit);
+      }
+    }
+  }
+
+  Cast& cast_;
+  const btCollisionObject& object_;
+  Box own_;
+  double limit_;
+  double stretch_ = 1;
+  std::set<std::pair<int, int>> asked_;
+  std::optional<SweepHit> best_;
+  bool answered_ = true;
+};
+
 /// @param needs    bool(btBroadphaseProxy&): who is asked.
 /// @param limit    double(): hits from here on are of no interest.
 /// @param answer   void(const SweepHit&).
 template <class Needs, class Limit, class Answer>
 Expected<int> ask(const Sweep& sweep, const Needs& needs, const Limit& limit, const Answer& answer) {
   if (const auto refused = refusal(sweep.from, sweep.to, sweep.settings)) return *refused;
-  const Expected<Body> body = convert(sweep.shape, sweep.settings.cache);
+  const Expected<Body> body = detail::exact_body(sweep.shape, sweep.settings.cache);
   if (!body) return body.error();
-  Cast cast(*body, sweep.from, sweep.to, sweep.settings.tolerance);
-  const Box box = box_around(sweep.shape, sweep.from, sweep.to, cast.bulge() + sweep.settings.tolerance);
-  const Region region{box, box, diameter(sweep.shape, sweep.from)};
+  Cast cast(sweep, *body);
   int unanswered = 0;
   const std::function<void(btBroadphaseProxy&)> visit = [&](btBroadphaseProxy& proxy) {
     const auto& object = *static_cast<const btCollisionObject*>(proxy.m_clientObject);
     if (!needs(proxy)) return;
-    Pieces found(region, sweep.settings.cache);
-    if (!found.add(*object.getCollisionShape(), object.getWorldTransform(), -1, -1, true)) ++unanswered;
-    const auto hit = cast.first_hit(object, found.pieces, std::min(1.0, limit()));
-    if (hit) answer(*hit);
+    const FirstHit found(cast, object, std::min(1.0, limit()));
+    if (!found.answered()) ++unanswered;
+    if (found.best()) answer(*found.best());
   };
   Neighbours neighbours(visit);
+  const Box box = cast.region(0, 1).way;
   sweep.world.getBroadphase()->aabbTest(box.lower, box.upper, neighbours);
   return unanswered;
 }
+
+/// A shape's first look for the nearest goes as far as this share of its diameter, and each later one so many times
+/// farther than the one before.
+constexpr double kNearShare = 0.125, kFartherShare = 2;
+
+/// The nearest object of a whole world.
+struct Nearest {
+  btCollisionWorld& world;
+  const btConvexShape& shape;
+  const Body& body;
+  const btTransform& pose;
+  const WorldQuerySettings& settings;
+
+  [[nodiscard]] Box way() const { return box_around(shape, pose, pose, settings.tolerance); }
+
+  /// @param whole  becomes whether the whole world lies in the box of the reach, so that a longer one asks no more.
+  [[nodiscard]] DistanceResult within(double reach, bool& whole) const {
+    const Region region{way(), widened(way(), reach), diameter(shape, pose), reach, true};
+    DistanceResult result;
+    Scratch scratch;
+    double least = reach;
+    int inside = 0;
+    const std::function<void(btBroadphaseProxy&)> visit = [&](btBroadphaseProxy& proxy) {
+      inside += holds(region.reached, proxy) ? 1 : 0;
+      const auto& object = *static_cast<const btCollisionObject*>(proxy.m_clientObject);
+      if (!passes(proxy, settings)) return;
+      Pieces found(region, settings.cache);
+      if (!found.add(*object.getCollisionShape(), object.getWorldTransform(), -1, -1, true)) ++result.unanswered;
+      found.sort();
+      for (Candidate& candidate : found.pieces) {
+        if (candidate.nearest > std::max(least, 0.0)) break;
+        if (!detail::convert(candidate)) continue;
+        const Piece& piece = candidate.piece;
+        const PenetrationDepth answer = penetration_depth({&body->beside(*piece.body), to_pd(pose)},
+                                                          {&piece.body->beside(*body), to_pd(piece.pose)}, scratch);
+        WorldHit hit;
+        fill(hit, object, piece, answer);
+        if (hit.distance > least || (result.nearest && hit.distance == least)) continue;
+        least = hit.distance;
+        result.nearest = hit;
+      }
+    };
+    Neighbours neighbours(visit);
+    world.getBroadphase()->aabbTest(region.reached.lower, region.reached.upper, neighbours);
+    whole = inside == world.getNumCollisionObjects();
+    return result;
+  }
+};
 
 }  // namespace
 
@@ -298,31 +336,17 @@ Expected<DistanceResult> distance_test(btCollisionWorld& world, const btConvexSh
     return *refused;
   }
   if (!(reach >= 0)) return Error{ErrorCode::bad_value, "must be >= 0", "reach"};
-  const Expected<Body> body = convert(shape, settings.cache);
+  const Expected<Body> body = detail::exact_body(shape, settings.cache);
   if (!body) return body.error();
-  const Box way = box_around(shape, pose, pose, settings.tolerance);
-  const Region region{way, widened(way, reach), diameter(shape, pose)};
-  DistanceResult result;
-  Scratch scratch;
-  double least = reach;
-  const std::function<void(btBroadphaseProxy&)> visit = [&](btBroadphaseProxy& proxy) {
-    const auto& object = *static_cast<const btCollisionObject*>(proxy.m_clientObject);
-    if (!passes(proxy, settings)) return;
-    Pieces found(region, settings.cache);
-    if (!found.add(*object.getCollisionShape(), object.getWorldTransform(), -1, -1, true)) ++result.unanswered;
-    for (const Piece& piece : found.pieces) {
-      const PenetrationDepth answer = penetration_depth({&(*body)->beside(*piece.body), to_pd(pose)},
-                                                        {&piece.body->beside(**body), to_pd(piece.pose)}, scratch);
-      WorldHit hit;
-      fill(hit, object, piece, answer);
-      if (hit.distance > least || (result.nearest && hit.distance == least)) continue;
-      least = hit.distance;
-      result.nearest = hit;
-    }
-  };
-  Neighbours neighbours(visit);
-  world.getBroadphase()->aabbTest(region.reached.lower, region.reached.upper, neighbours);
-  return result;
+  const Nearest nearest{world, shape, *body, pose, settings};
+  // What lies farther than an answer is not asked, so that an answer nearby costs the same however far the reach is.
+  double near = std::min(reach, std::max(kNearShare * diameter(shape, pose), settings.tolerance));
+  for (;;) {
+    bool whole = false;
+    const DistanceResult result = nearest.within(near, whole);
+    if (result.nearest || near >= reach) return result;
+    near = whole ? reach : std::min(reach, kFartherShare * near);
+  }
 }
 
 }  // namespace pd

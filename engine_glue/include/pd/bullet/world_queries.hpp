@@ -51,6 +51,7 @@ struct SweepResult {
 
 struct DistanceResult {
   std::optional<WorldHit> nearest;
+  /// Objects without an exact body (as above) that lie near enough to be nearer than the answer.
   int unanswered = 0;
 };
 
@@ -59,8 +60,9 @@ struct DistanceResult {
 /// (`updateAabbs`, or a step), as for Bullet's own queries. Objects without contact response are asked, too.
 /// @return an error where `shape` has no exact body, a transform is not finite (`non_finite`) or a setting is out of
 /// its range (`bad_value`); hits with points, normal and distance as of `SweepHit`. Time: a time of impact
-/// (`pd/contact/time_of_impact.hpp`, whose proof this is) for each convex piece, and for each triangle of a mesh, that
-/// meets the box of the whole way. Without a cache each is converted, too.
+/// (`pd/contact/time_of_impact.hpp`, whose proof this is) for each convex piece that meets the box of the whole way.
+/// Along a mesh the way is cut into stretches as long as the shape, or as a 256th of the mesh. Each triangle that meets
+/// the box of a stretch before the hit is asked. Without a cache each is converted, too.
 [[nodiscard]] Expected<SweepResult> sweep_test(btCollisionWorld& world, const btConvexShape& shape,
                                                const btTransform& from, const btTransform& to,
                                                const WorldQuerySettings& settings = {});
@@ -77,7 +79,8 @@ Expected<int> sweep_test(btCollisionWorld& world, const btConvexShape& shape, co
 /// closest points.
 /// @param reach  in the world's unit; it may be infinite.
 /// @return an error as above, or where `reach` is below 0 or NaN (`bad_value`).
-/// Time: an exact query (`penetration_depth`, tightest bracket) for each convex piece within reach.
+/// Time: an exact query (`penetration_depth`, tightest bracket) for each convex piece that may be nearer than the
+/// answer by its box. Triangles count by their distance from the middle of the shape.
 [[nodiscard]] Expected<DistanceResult> distance_test(btCollisionWorld& world, const btConvexShape& shape,
                                                      const btTransform& pose, double reach,
                                                      const WorldQuerySettings& settings = {});
