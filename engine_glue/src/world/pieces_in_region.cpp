@@ -34,7 +34,7 @@ Expected<std::shared_ptr<const CachedShape>> exact_body(const btConvexShape& sha
   return body;
 }
 
-bool convert(Candidate& candidate) {
+bool convert(RegionCandidate& candidate) {
   if (candidate.piece.body != nullptr) return true;
   auto triangle = to_shape({candidate.corners, candidate.piece.part, candidate.piece.index}, candidate.margin);
   if (triangle == nullptr) return false;
@@ -73,7 +73,7 @@ bool Pieces::add(const btCollisionShape& shape, const btTransform& pose, int par
 
 void Pieces::sort() {
   std::stable_sort(pieces.begin(), pieces.end(),
-                   [](const Candidate& x, const Candidate& y) { return x.nearest < y.nearest; });
+                   [](const RegionCandidate& x, const RegionCandidate& y) { return x.nearest < y.nearest; });
 }
 
 // `own` is the shape's box in the world. A region may be so wide that its middle loses the shape.

@@ -22,7 +22,7 @@ namespace pd::detail {
 Expected<std::shared_ptr<const CachedShape>> exact_body(const btConvexShape& shape, BulletShapeCache* cache);
 
 /// A convex piece of an object.
-struct Piece {
+struct RegionPiece {
   std::shared_ptr<const CachedShape> body;
   btTransform pose;
   int part;
@@ -30,8 +30,8 @@ struct Piece {
 };
 
 /// A piece that may be asked: a body, or a triangle that is converted when it is asked.
-struct Candidate {
-  Piece piece;  ///< without a body where it is a triangle
+struct RegionCandidate {
+  RegionPiece piece;  ///< without a body where it is a triangle
   std::array<Vec3, 3> corners;
   double margin = 0;   ///< of the triangle
   double nearest = 0;  ///< no point of the shape's way is nearer
@@ -47,7 +47,7 @@ struct Region {
 };
 
 /// Converts a candidate that is a triangle. @return false where it is no body: Bullet leaves it out, too.
-bool convert(Candidate& candidate);
+bool convert(RegionCandidate& candidate);
 
 /// Rounded poses and boxes change lengths by less.
 inline constexpr double kTurned = 1 + 1e-5;
@@ -65,7 +65,7 @@ class Pieces {
   /// In the order of what their boxes and corners tell about their distances.
   void sort();
 
-  std::vector<Candidate> pieces;
+  std::vector<RegionCandidate> pieces;
 
  private:
   void add_triangles(const btConcaveShape& shape, const btTransform& pose, const ChildBox& own);

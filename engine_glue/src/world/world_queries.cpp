@@ -23,11 +23,11 @@ namespace pd {
 namespace {
 
 using Box = detail::ChildBox;
-using detail::Candidate;
 using detail::kRounded;
-using detail::Piece;
 using detail::Pieces;
 using detail::Region;
+using detail::RegionCandidate;
+using detail::RegionPiece;
 using Body = std::shared_ptr<const detail::CachedShape>;
 
 /// Every object whose box in the broadphase meets a box.
@@ -43,7 +43,7 @@ class Neighbours : public btBroadphaseAabbCallback {
   const std::function<void(btBroadphaseProxy&)>& visit_;
 };
 
-void fill(WorldHit& hit, const btCollisionObject& object, const Piece& piece, const PenetrationDepth& answer) {
+void fill(WorldHit& hit, const btCollisionObject& object, const RegionPiece& piece, const PenetrationDepth& answer) {
   hit.object = &object;
   hit.part = piece.part;
   hit.index = piece.index;
@@ -143,7 +143,7 @@ class Cast {
   }
 
   /// Asks about one piece, which counts if it is hit before `limit`.
-  std::optional<SweepHit> hit(const btCollisionObject& object, const Piece& piece, double limit) {
+  std::optional<SweepHit> hit(const btCollisionObject& object, const RegionPiece& piece, double limit) {
     const TimeOfImpact found =
         time_of_impact({{&body_->beside(*piece.body), start_}, motion_},
                        {{&piece.body->beside(*body_), to_pd(piece.pose)}, {}}, limit, scratch_, settings_);
@@ -208,8 +208,8 @@ class FirstHit {
     }
     Pieces found(region, cast_.cache());
     answered_ = found.add(*object_.getCollisionShape(), object_.getWorldTransform(), -1, -1, true) && answered_;
-    for (Candidate& candidate : found.pieces) {
-      const Piece& piece = candidate.piece;
+    for (RegionCandidate& candidate : found.pieces) {
+      const RegionPiece& piece = candidate.piece;
       // A triangle reaches into several stretches.
       if (stretch_ < 1 && !asked_.insert({piece.part, piece.index}).second) continue;
       if (!detail::convert(candidate)) continue;
@@ -281,10 +281,10 @@ struct Nearest {
       Pieces found(region, settings.cache);
       if (!found.add(*object.getCollisionShape(), object.getWorldTransform(), -1, -1, true)) ++result.unanswered;
       found.sort();
-      for (Candidate& candidate : found.pieces) {
+      for (RegionCandidate& candidate : found.pieces) {
         if (candidate.nearest > std::max(least, 0.0)) break;
         if (!detail::convert(candidate)) continue;
-        const Piece& piece = candidate.piece;
+        const RegionPiece& piece = candidate.piece;
         const PenetrationDepth answer = penetration_depth({&body->beside(*piece.body), to_pd(pose)},
                                                           {&piece.body->beside(*body), to_pd(piece.pose)}, scratch);
         WorldHit hit;
