@@ -160,6 +160,28 @@ TEST_F(UnionManifolds, AOneSidedSheetIsLeftByItsFront) {
   EXPECT_TRUE(none.normal.isZero(0));
 }
 
+TEST_F(UnionManifolds, ASlenderBodyThroughASheetHasAContact) {
+  // Of each triangle alone the shortest way leads over an inner edge, which the next triangle covers.
+  const PieceBody floor = *PieceBody::of_sheet(floor_of_cells().view());
+  const ConvexShape needle = *ConvexPolytope::from_points(std::vector<Vec3>{{0, 0, -0.2}, {0.03, 0.05, 0.8}});
+  const ConvexShape pin = *ConvexShape::capsule(0.01, 0.5, 2);
+  for (const bool one_sided : {false, true}) {
+    settings_.one_sided = one_sided;
+    for (int i = 0; i < 100; ++i) {
+      SCOPED_TRACE(i);
+      const double x = 0.0049 * i, y = 0.0031 * i;
+      const PieceBody thin = PieceBody::of_compound(Compound(needle)), round = PieceBody::of_compound(Compound(pin));
+      const UnionManifold sharp = ask({&thin, at(x, y, 0)}, {&floor, Pose()});
+      const UnionManifold blunt = ask({&round, at(x, y, 0.31)}, {&floor, Pose()});
+      for (const UnionManifold* found : {&sharp, &blunt}) {
+        ASSERT_FALSE(found->patches.empty());
+        EXPECT_LT((found->normal - Vec3::UnitZ()).norm(), 1e-9);
+        EXPECT_NEAR(found->patches[0].points[0].contact.depth, 0.2, 1e-9);
+      }
+    }
+  }
+}
+
 TEST_F(UnionManifolds, WallAndFloorAreTwoPatches) {
   Mesh corner;
   corner.points = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {0, 2, 2}};

@@ -468,8 +468,8 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, Patches& pa
         one_sided_.add_behind(static_cast<int>(i), back);
         continue;
       }
-      one_sided_.add_way_of(answer.depth);
     }
+    one_sided_.add_way_of(answer.depth);
     ContactManifold points;
     AskedPieces pieces = question.of_pieces(a, triangle.wrapper());
     const PiecePair pair = pieces.as(answer.a, answer.b, front);

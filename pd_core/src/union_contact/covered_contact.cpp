@@ -24,12 +24,6 @@ constexpr double kBeside = 4;
 /// Bodies that are in each other by less than this share of the reach of contacts may wait for a step.
 constexpr double kSunk = 1.0 / 16;
 
-double deepest_of(const ContactManifold& points) {
-  double deepest = points.points[0].depth;
-  for (int i = 1; i < points.count; ++i) deepest = std::max(deepest, points.points[static_cast<std::size_t>(i)].depth);
-  return deepest;
-}
-
 /// What one side's piece does to the manifold.
 class SideRule {
  public:
@@ -288,7 +282,7 @@ int drop_covered(const PiecePair& pair, ContactManifold& points) {
   return before - points.count;
 }
 
-ContactManifold along_front(const PiecePair& pair) {
+ContactManifold along_front(const PiecePair& pair, FrontPoints which) {
   UnionPiece& own = pair.cover.made;
   set_piece(pair.b, own);
   if (own.planes.empty()) return {};
@@ -296,8 +290,15 @@ ContactManifold along_front(const PiecePair& pair) {
   const Vec3 farthest = farthest_point(pair.a, -side.normal);
   const double depth = pair.a.shape->margin() + own.margin - side.height(farthest);
   const PieceSide sides{*pair.around_b, pair.b, pair.a, true, pair.front};
-  return points_along(exit_along(sides, side.normal, depth, farthest), sides, {}, own, pair.threshold,
-                      seam_slack(pair.a, pair.b, pair.pose_rounding), pair.manifold);
+  const PieceExit exit = exit_along(sides, side.normal, depth, farthest);
+  ContactManifold points =
+      points_along(exit, sides, {}, own, pair.threshold, seam_slack(pair.a, pair.b, pair.pose_rounding), pair.manifold);
+  if (points.count == 0 && which == FrontPoints::any) {
+    points.normal = exit.n;
+    points.points[0] = {exit.on_other, exit.on_own, depth, 0};
+    points.count = 1;
+  }
+  return points;
 }
 
 }  // namespace pd

@@ -6,9 +6,8 @@ namespace pd {
 
 namespace {
 
-/// Sines: less than a degree behind an edge is the noise of normals there; 25 degrees around the back's normal.
+/// Sine: less than a degree behind an edge is the noise of normals there.
 constexpr double kSideways = 0.02;
-constexpr double kThrough = 0.9;
 constexpr std::size_t kMostWays = 4;
 
 }  // namespace
@@ -19,13 +18,8 @@ void OneSided::clear() {
 }
 
 bool OneSided::admit(const PenetrationDepth& answer, const Vec3& front, int triangle) {
-  const bool overlapping = answer.contact == ContactClass::overlapping;
-  const double ahead = answer.normal.dot(front);
-  if (ahead >= -kSideways) {
-    if (overlapping) ways_.emplace_back(answer.depth * answer.normal);
-    return true;
-  }
-  if (overlapping && ahead < -kThrough) behind_.push_back({triangle, front});
+  if (answer.normal.dot(front) >= -kSideways) return true;
+  if (answer.contact == ContactClass::overlapping) add_behind(triangle, front);
   return false;
 }
 

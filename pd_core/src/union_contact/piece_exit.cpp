@@ -4,6 +4,12 @@
 
 namespace pd::detail {
 
+double deepest_of(const ContactManifold& points) {
+  double deepest = points.points[0].depth;
+  for (int i = 1; i < points.count; ++i) deepest = std::max(deepest, points.points[static_cast<std::size_t>(i)].depth);
+  return deepest;
+}
+
 void drop_point(ContactManifold& points, int i) {
   --points.count;
   points.points[static_cast<std::size_t>(i)] = points.points[static_cast<std::size_t>(points.count)];

@@ -25,6 +25,9 @@ struct PieceExit {
                                            const UnionPiece& own, double threshold, double slack,
                                            ManifoldScratch& scratch);
 
+/// Returns the greatest depth of a manifold's points. Requires: it has some.
+[[nodiscard]] double deepest_of(const ContactManifold& points);
+
 /// Takes a point out of a manifold; the last one takes its place.
 void drop_point(ContactManifold& points, int i);
 

@@ -6,11 +6,13 @@
 
 #include "depth/pair/scaled_shape.hpp"
 #include "pd/compound/compound_depth.hpp"
+#include "pd/contact/farthest_point.hpp"
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/union_contact/deep_union.hpp"
 #include "pd/union_contact/one_sided.hpp"
 #include "pd/union_contact/patches.hpp"
 #include "pd/union_contact/straddled.hpp"
+#include "union_contact/piece_exit.hpp"
 #include "union_contact/piece_store.hpp"
 
 namespace pd {
@@ -84,6 +86,8 @@ class Asked {
   void add_fronts(int i);
   /// Adds the way out of the whole of A along the front of a triangle.
   void add_front(int i, const OneSided::Behind& behind);
+  /// Returns the side by which A is to leave a triangle: its front, or the one that A's middle is on.
+  [[nodiscard]] Vec3 side_of(int j, const Vec3& middle);
   /// Adds the way out of the whole off a sheet where no contact of a piece is left that overlaps.
   void leave_straddled();
   PiecePair pair_of(PieceAmong& around_a, PieceAmong& around_b, const PosedShape& a, const PosedShape& b) const;
@@ -122,11 +126,8 @@ void Asked::ask(int i, int j) {
   const PosedShape a = a_.posed(i), b = b_.posed(j);
   const PenetrationDepth depth = penetration_depth(a, b, scratch_.depth, depth_settings_);
   if (depth.signed_distance() > settings_.breaking_threshold) return;
-  Vec3 front = Vec3::Zero();
-  if (settings_.one_sided) {
-    front = b_.front(j);
-    if (!one_sided_.admit(depth, front, j)) return;
-  }
+  const Vec3 front = settings_.one_sided ? b_.front(j) : Vec3(Vec3::Zero());
+  if (settings_.one_sided && !one_sided_.admit(depth, front, j)) return;
   PieceAmong around_a(a_, i), around_b(b_, j);
   PiecePair pair = pair_of(around_a, around_b, a, b);
   pair.front = front;
@@ -134,8 +135,13 @@ void Asked::ask(int i, int j) {
   covered_ += keep_uncovered(pair, depth, AnswerPoints::made, points);
   if (!b_.is_sheet()) {
     deep_.add({depth, a, b, i, j}, points);
+  } else if (points.count > 0) {
+    one_sided_.add_way(std::max(deepest_of(points), 0.0) * points.normal);
   } else if (a_.size() > 1) {
     straddled_.note({i, j}, -depth.signed_distance(), points);
+  } else if (depth.contact == ContactClass::overlapping) {
+    const Vec3 normal = b_.front(j);
+    one_sided_.add_behind(j, side_of(j, 0.5 * (farthest_point(a, normal) + farthest_point(a, -normal))));
   }
   add(i, j, points);
 }
@@ -160,18 +166,20 @@ void Asked::add_front(int i, const OneSided::Behind& behind) {
   PieceAmong around_a(a_, i), around_b(b_, behind.triangle);
   PiecePair pair = pair_of(around_a, around_b, a, b);
   pair.front = behind.front;
-  add(i, behind.triangle, along_front(pair));
+  add(i, behind.triangle, along_front(pair, a_.size() > 1 ? FrontPoints::over_triangle : FrontPoints::any));
+}
+
+Vec3 Asked::side_of(int j, const Vec3& middle) {
+  const PosedShape b = b_.posed(j);
+  const Vec3 normal = b_.front(j);
+  if (settings_.one_sided) return normal;
+  return side_towards(middle, normal, b.pose.apply(b.shape->polytope()->vertex(0)));
 }
 
 void Asked::leave_straddled() {
   const TriangleBox box = a_.whole_box();
   const Vec3 middle = 0.5 * (box.low + box.high);
-  for (const auto& [i, j] : straddled_.need_way_out(patches_)) {
-    const PosedShape b = b_.posed(j);
-    const Vec3 corner = b.pose.apply(b.shape->polytope()->vertex(0));
-    const Vec3 normal = b_.front(j);
-    add_front(i, {j, settings_.one_sided ? normal : side_towards(middle, normal, corner)});
-  }
+  for (const auto& [i, j] : straddled_.need_way_out(patches_)) add_front(i, {j, side_of(j, middle)});
 }
 
 bool Asked::ask_pairs() {

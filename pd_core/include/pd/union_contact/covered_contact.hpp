@@ -62,8 +62,12 @@ int keep_uncovered(const PiecePair& pair, const PenetrationDepth& answer, Answer
 /// @return how many
 int drop_covered(const PiecePair& pair, ContactManifold& points);
 
+/// Points of a contact along a triangle's front. If A has none over the triangle, `any` takes A's deepest point and its
+/// foot in the triangle's plane.
+enum class FrontPoints : std::uint8_t { over_triangle, any };
+
 /// The contact of a body A that stands through or behind triangle B and is to leave by B's front: points over
 /// the triangle, each as deep as A lies behind its plane.
-[[nodiscard]] ContactManifold along_front(const PiecePair& pair);
+[[nodiscard]] ContactManifold along_front(const PiecePair& pair, FrontPoints which = FrontPoints::over_triangle);
 
 }  // namespace pd

@@ -2,10 +2,9 @@
 /// Meshes may be surfaces of solids: a body then leaves a triangle by its front.
 ///
 /// The shortest way off a sheet leads to either side. For a solid's surface the way backward is none: it leads on into
-/// the solid. A contact that leads backward is dropped if the body is apart from the triangle, or leaves it over an
-/// edge (which is its neighbour's to answer). If it leads through the back, the contact is along the front instead,
-/// unless another triangle's contact leads off this one anyway. So a box that lies too deep on a kerb leaves upward,
-/// and not through the wall of the kerb behind it.
+/// the solid. A contact that leads backward is dropped. If the body stands through or behind the triangle, the contact
+/// is along the front instead, unless another triangle's contact leads off this one anyway. So a box that lies too deep
+/// on a kerb leaves upward, and not through the wall of the kerb behind it.
 #pragma once
 
 #include <vector>
@@ -22,7 +21,7 @@ class OneSided {
   void clear();
 
   /// Takes the answer about a body A and triangle number `triangle`, whose front is `front` (unit, in the world).
-  /// @return true if the answer's own contact counts. Time O(1).
+  /// @return true if the answer's own contact may count; its way is added by the caller. Time O(1).
   bool admit(const PenetrationDepth& answer, const Vec3& front, int triangle);
 
   /// Takes note that the body stands through or behind a triangle that it is to leave by its front (unit).
