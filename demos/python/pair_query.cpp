@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "pd/depth/derivatives.hpp"
+#include "pd/depth/difference_queries.hpp"
 #include "pd/depth/directional_depth.hpp"
 
 namespace pd::python {
@@ -69,8 +70,24 @@ struct PosedBody {
   const Pose& pose;
 };
 
+/// The class alone: the place of the origin in the difference.
+Expected<UnionDepth> ask_class(const PosedBody& a, const PosedBody& b, Workspace& space) {
+  const auto found = [&]() -> Expected<ContactClass> {
+    if (a.body.convex() != nullptr && b.body.convex() != nullptr) {
+      return point_in_difference({a.body.convex(), a.pose}, {b.body.convex(), b.pose}, Vec3::Zero(), space.scratch);
+    }
+    const Compound whole_a = a.body.compound(), whole_b = b.body.compound();
+    return point_in_difference({&whole_a, a.pose}, {&whole_b, b.pose}, Vec3::Zero(), space.scratch);
+  }();
+  if (!found) return found.error();
+  UnionDepth answer;
+  answer.contact = *found;
+  return answer;
+}
+
 Expected<UnionDepth> ask_any(const PosedBody& a, const PosedBody& b, const QuerySettings& settings, Workspace& space,
                              PairMemory* memory) {
+  if (settings.class_alone) return ask_class(a, b, space);
   if (a.body.convex() != nullptr && b.body.convex() != nullptr) {
     return ask_convex(*a.body.convex(), a.pose, *b.body.convex(), b.pose, settings, space,
                       memory == nullptr ? nullptr : &memory->convex);
@@ -409,6 +426,7 @@ void bind_pair_queries(py::module_& module) {
   require_made(settings);
   module.def("settings", &read_settings);
   module.attr("DEFAULTS") = QuerySettings();
+  module.attr("CLASS_ALONE") = QuerySettings{.depth = {}, .class_alone = true};
   py::class_<PairMemory> warm(
       module, "Warm",
       "The memory of one pair between frames: pass it as `warm` to depth. Nothing in it is\n"

@@ -49,6 +49,7 @@ struct PairMemory {
 struct QuerySettings {
   DepthSettings depth;
   double union_delta = 1e-2;
+  bool class_alone = false;  ///< no number of the answer but `contact` is asked for; the rest stays zero
 };
 
 /// @param delta   None: the protocol's defaults (exact; 1e-6 for curved bodies, 1e-2 for unions).

@@ -1,5 +1,6 @@
 """Queries of pairs: against formulas, against each other, and one by one against a batch."""
 import copy
+import itertools
 import pickle
 
 import numpy as np
@@ -153,6 +154,24 @@ def test_beyond_bodies_farther_apart_are_told_apart_and_no_further(poses):
         assert pdepth.intersects(GEM, BOX, matrices[i]) == (plain.contact[i] != 0)
     assert np.array_equal(pdepth.intersects(GEM, BOX, matrices), plain.contact != 0)
     assert pdepth.depth(GEM, BOX, matrices[0], beyond=None).distance == plain.distance[0]
+
+
+def test_large_unions_that_meet_are_told_without_their_depth():
+    # Their depth is refused as limit_exceeded, after seconds.
+    gem = pdepth.ConvexPolytope(np.random.default_rng(1).normal(size=(20, 3)) * 0.3)
+    places = np.random.default_rng(2).normal(size=(250, 3)) * 1.5
+    crowd = pdepth.Compound([(gem, at(*place)) for place in places])
+    assert pdepth.intersects(crowd, crowd) and not pdepth.intersects(crowd, crowd, at(30, 0, 0))
+    assert pdepth.intersects([crowd], crowd, [at(0.1, 0, 0), at(30, 0, 0)]).tolist() == [True, False]
+
+
+def test_touching_curved_and_swept_bodies_meet(poses):
+    shapes = (pdepth.Sphere(0.5), pdepth.Cylinder(0.5, 1.0), pdepth.Box([1, 1, 1], margin=0.25), GEM,
+              pdepth.Compound([BOX, (pdepth.Cone(0.5, 0.5), at(2, 0, 0))]))
+    for one, other in itertools.combinations_with_replacement(shapes, 2):
+        found = pdepth.depth(one, other, poses(40, 4.0))
+        assert np.array_equal(pdepth.intersects(one, other, poses(40, 4.0)), found.contact != 0)
+    assert pdepth.intersects(BOX, pdepth.Sphere(0.5), pose_b=at(1.5, 0, 0))
 
 
 def test_rows_of_a_batch_by_number(poses):

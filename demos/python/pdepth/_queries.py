@@ -9,7 +9,7 @@ import numpy as np
 from . import _core
 from ._errors import length, number_array, refused, whole_number
 from ._files import save_arrays
-from ._core import DEFAULTS
+from ._core import CLASS_ALONE, DEFAULTS
 
 #: What the numbers of a batch's `contact` mean.
 CONTACTS = ("separated", "touching", "overlapping")
@@ -193,7 +193,10 @@ def depth(a, b, pose_a=None, pose_b=None, *, method="auto", delta=None, bracket=
         found = _core.ask_plain(a, b, pose_a, pose_b)
         if found is not None:
             return found
-    settings = _settings(method, delta, bracket, beyond)
+    return _asked(a, b, pose_a, pose_b, _settings(method, delta, bracket, beyond), warm, axis, threads)
+
+
+def _asked(a, b, pose_a, pose_b, settings, warm, axis, threads):
     if not _is_batch(a, b, pose_a, pose_b):
         if not (warm is None or warm is False or isinstance(warm, _core.Warm)):
             raise refused(f"warm: one pair takes a pdepth.Warm, not {warm!r}; True is for a batch (bad_value)")
@@ -230,10 +233,12 @@ def distance(a, b, pose_a=None, pose_b=None, *, threads=None):
 def intersects(a, b, pose_a=None, pose_b=None, *, threads=None):
     """Answers if the bodies have a point in common, exactly for polytopes; touching counts. A bool, or [n] bools for many.
 
-    For many, a row that is refused is False; depth says why. No distance is searched for.
+    For many, a row that is refused is False; depth says why. Neither a depth nor a distance is searched for.
     Shapes and poses as in depth. Raises Refused as depth.
     """
-    found = depth(a, b, pose_a, pose_b, beyond=0.0, threads=threads)
+    if threads is not None:
+        _threads(threads)
+    found = _asked(a, b, pose_a, pose_b, CLASS_ALONE, None, 0, threads)
     if isinstance(found, Batch):
         return (found.contact != 0) & (found.error == 0)
     return found.contact != "separated"
