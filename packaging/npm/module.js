@@ -140,9 +140,10 @@ function lastError() {
   return new PdepthError(textAt(wasm.pdepth_status_name(status)), textAt(words[(out + at.error.message) >> 2]),
                          placeOf(textAt(words[(out + at.error.where) >> 2])));
 }
-/** A place in the words of C as one of this package: "question.pose_b.translation[1]" is poseB.position[1]. */
+/** A place in the words of C as one of this package: "question.pose_b.translation[1]" is poseB.position[1], "mesh.points[1]" is points[1]. */
 function placeOf(where) {
-  return where.replace(/^question\./, '').replace(/(pose_[ab])\.translation/, '$1.position').replace(/_([a-z])/g, (_, letter) => letter.toUpperCase());
+  return where.replace(/^question\./, '').replace(/^(?:mesh|faces)\.(points|faces)/, '$1').replace(/^mesh$/, 'points')
+      .replace(/(\bpose\w*)\.translation/, '$1.position').replace(/_([a-z])/g, (_, letter) => letter.toUpperCase());
 }
 function check(status) {
   see();
@@ -196,8 +197,9 @@ function readWhole(x, least, place) {
   return x;
 }
 
-/** Refuses a key of the caller's object that is none of the names. */
+/** Refuses what is no object, nullish values aside, and a key of the caller's object that is none of the names. */
 function allowOnly(object, names, place) {
+  if (object != null && typeof object !== 'object') refuse('bad_value', `must be an object of ${names.join(', ')}`, place);
   for (const key of Object.keys(object ?? {})) {
     if (!names.includes(key)) refuse('bad_value', `is none of ${names.join(', ')}`, `${place}.${key}`);
   }

@@ -1,16 +1,22 @@
 // ---- Queries
 
+function pairPointer(pair, place) {
+  if (!(pair instanceof Pair)) refuse('bad_value', 'must be a Pair of this library', place);
+  return pair[kUse](place);
+}
+
 function writeQuestion(a, poseA, b, poseB, options) {
   const out = struct('question');
   words[(out + at.question.a) >> 2] = shapePointer(a, 'a');
   words[(out + at.question.b) >> 2] = shapePointer(b, 'b');
   fillPose(out + at.question.pose_a, poseA, 'poseA');
   fillPose(out + at.question.pose_b, poseB, 'poseB');
-  if (options) {
+  if (options != null) {
+    if (typeof options !== 'object') refuse('bad_value', 'must be an object of settings, with a pair or without', 'options');
     const {pair, ...settings} = options;
     const written = writeSettings(settings);
     words[(out + at.question.settings) >> 2] = written;
-    if (pair) words[(out + at.question.pair) >> 2] = pair[kUse]('pair');
+    if (pair != null) words[(out + at.question.pair) >> 2] = pairPointer(pair, 'pair');
   }
   return out;
 }
@@ -95,6 +101,7 @@ function fillMotion(into, motion, place) {
 export function timeOfImpact(a, poseA, b, poseB, movement, options) {
   return call(() => {
     const question = writeQuestion(a, poseA, b, poseB, options), moves = struct('movement');
+    if (movement == null) refuse('bad_value', 'must be an object with a duration', 'movement');
     allowOnly(movement, ['a', 'b', 'duration', 'distanceTolerance', 'allowedDepth'], 'movement');
     fillMotion(moves + at.movement.a, movement.a, 'movement.a');
     fillMotion(moves + at.movement.b, movement.b, 'movement.b');
@@ -157,10 +164,11 @@ function writeShapes(shapes, place) {
   return [row, many ? 4 : 0, many ? shapes.length : -1];
 }
 
+const kLengths = new Map([['position', 3], ['quaternion', 7], ['matrix', 12]]);
 /** Writes the poses of all rows into a pdepth_pose_array; one pose of the row's length stands for all. Returns the rows, or -1. */
 function fillPoses(into, poses, form, place) {
   if (poses == null) return -1;
-  const length = {position: 3, quaternion: 7, matrix: 12}[form] ?? refuse('bad_value', `"${form}" is none of position, quaternion, matrix`, `${place}Form`);
+  const length = kLengths.get(form) ?? refuse('bad_value', `"${String(form)}" is none of position, quaternion, matrix`, place.replace('poses', 'form'));
   const [pointer, count] = writeNumbers(poses, place, length);
   words[(into + at.pose_array.form) >> 2] = kFormOfLength[length];
   words[(into + at.pose_array.numbers) >> 2] = pointer;
@@ -173,26 +181,28 @@ const kColumns = {depth: 1, lower: 1, upper: 1, distance: 1, distance_lower: 1, 
 const camel = name => name.replace(/_(.)/g, (_, letter) => letter.toUpperCase());
 
 /** Depths of many rows in one call, as columns. */
-export function depthBatch({a, posesA, formA = 'quaternion', b, posesB, formB = 'quaternion', settings, count}) {
+export function depthBatch(batch) {
   return call(() => {
+    allowOnly(batch, ['a', 'posesA', 'formA', 'b', 'posesB', 'formB', 'settings', 'count'], 'batch');
+    const {a, posesA, formA = 'quaternion', b, posesB, formB = 'quaternion', settings, count} = batch ?? {};
     if (count !== undefined) readWhole(count, 0, 'count');
-    const batch = struct('batch');
+    const question = struct('batch');
     const written = writeSettings(settings);
     const [pointerA, strideA, rowsA] = writeShapes(a, 'a');
     const [pointerB, strideB, rowsB] = writeShapes(b, 'b');
-    const rows = [rowsA, rowsB, fillPoses(batch + at.batch.poses_a, posesA, formA, 'posesA'),
-                  fillPoses(batch + at.batch.poses_b, posesB, formB, 'posesB'), count ?? -1].filter(n => n >= 0);
+    const rows = [rowsA, rowsB, fillPoses(question + at.batch.poses_a, posesA, formA, 'posesA'),
+                  fillPoses(question + at.batch.poses_b, posesB, formB, 'posesB'), count ?? -1].filter(n => n >= 0);
     const n = rows.length ? rows[0] : 1;
     if (rows.some(m => m !== n)) refuse('bad_value', `arrays have rows for ${rows.join(', ')} pairs`, 'count');
-    words[(batch + at.batch.a) >> 2] = pointerA;
-    words[(batch + at.batch.stride_a) >> 2] = strideA;
-    words[(batch + at.batch.b) >> 2] = pointerB;
-    words[(batch + at.batch.stride_b) >> 2] = strideB;
-    words[(batch + at.batch.settings) >> 2] = written;
-    longs[(batch + at.batch.count) >> 3] = BigInt(n);
+    words[(question + at.batch.a) >> 2] = pointerA;
+    words[(question + at.batch.stride_a) >> 2] = strideA;
+    words[(question + at.batch.b) >> 2] = pointerB;
+    words[(question + at.batch.stride_b) >> 2] = strideB;
+    words[(question + at.batch.settings) >> 2] = written;
+    longs[(question + at.batch.count) >> 3] = BigInt(n);
     const answers = room(at.answer.size * Math.max(n, 1));
     words[answers >> 2] = at.answer.size;
-    const status = wasm.pdepth_depth_batch(context, batch, answers, at.answer.size);
+    const status = wasm.pdepth_depth_batch(context, question, answers, at.answer.size);
     see();
     const out = {count: n, status: new Uint8Array(n), contact: new Uint8Array(n), error: status === 0 ? null : lastError()};
     const integers = ['status', 'contact'].map(name => [out[name], at.answer[name] >> 2]);

@@ -5,13 +5,19 @@ const forgotten = typeof FinalizationRegistry === 'undefined' ? null
 const releaseShape = pointer => wasm.pdepth_shape_release(pointer);
 const releasePair = pointer => wasm.pdepth_pair_destroy(pointer);
 
+/** A pointer that the module has given. No caller can make one, so that none is read that the module did not give. */
+class Handle {
+  constructor(pointer) { this.pointer = pointer; }
+}
+
 class Owned {
   #pointer;
   #release;
-  constructor(pointer, release) {
-    this.#pointer = pointer;
+  constructor(handle, release) {
+    if (!(handle instanceof Handle)) refuse('bad_value', 'a shape is made as a Box, Sphere, Convex ...', '');
+    this.#pointer = handle.pointer;
     this.#release = release;
-    if (forgotten) forgotten.register(this, {release, pointer}, this);
+    if (forgotten) forgotten.register(this, {release, pointer: this.#pointer}, this);
   }
   /** Gives the memory back. A second call does nothing. */
   free() {
@@ -40,16 +46,12 @@ function made(name, write) {
     const parameters = write();
     const out = room(8);
     check(wasm[name](context, ...parameters, out));
-    return words[out >> 2];
+    return new Handle(words[out >> 2]);
   });
 }
 
 export class Shape extends Owned {
-  #info;
-  constructor(pointer) {
-    if (new.target === Shape && typeof pointer !== 'number') refuse('bad_value', 'a shape is made as a Box, Sphere, Convex ...', '');
-    super(pointer, releaseShape);
-  }
+  constructor(handle) { super(handle, releaseShape); }
   /** The shape swept by a ball of this radius, in addition to its margin. */
   withMargin(margin) {
     return new Shape(made('pdepth_with_margin', () => [shapePointer(this, 'shape'), readNumber(margin, 'margin')]));
@@ -82,10 +84,11 @@ export class Shape extends Owned {
   /** The points of a feature of an answer, as numbers of the rows that the shape was made from. */
   pointsOf(feature) {
     return call(() => {
+      if (feature == null) refuse('bad_value', 'must be a feature of an answer', 'feature');
       const asked = room(at.feature.size), count = room(8);
       words[(asked + at.feature.kind) >> 2] = kFeatures.indexOf(feature.kind);
       words[(asked + at.feature.part) >> 2] = partNumber(feature.part);
-      for (const key of ['first', 'second']) words[(asked + at.feature[key]) >> 2] = feature[key];
+      for (const key of ['first', 'second']) words[(asked + at.feature[key]) >> 2] = readNumber(feature[key] ?? 0, `feature.${key}`);
       check(wasm.pdepth_feature_points(context, shapePointer(this, 'shape'), asked, 0, count));
       const found = words[count >> 2], out = room(4 * found);
       check(wasm.pdepth_feature_points(context, shapePointer(this, 'shape'), asked, out, count));
@@ -100,9 +103,9 @@ function partNumber(part) {
   return part === 'mesh' ? kMesh : readWhole(part, 0, 'part');
 }
 
-const kAxes = {x: 0, y: 1, z: 2};
+const kAxes = new Map([['x', 0], ['y', 1], ['z', 2]]);
 function axisNumber(axis) {
-  return kAxes[axis] ?? refuse('bad_value', `"${axis}" is none of x, y, z`, 'axis');
+  return kAxes.get(axis) ?? refuse('bad_value', `"${String(axis)}" is none of x, y, z`, 'axis');
 }
 function roundShape(name, radius, halfHeight, axis) {
   return made(name, () => [readNumber(radius, 'radius'), readNumber(halfHeight, 'halfHeight'), axisNumber(axis)]);
@@ -132,6 +135,7 @@ function writeFaces(points, faces) {
     for (const v of loop(i)) {
       // The module's integers would turn other values into numbers of other points.
       if (v !== (v | 0)) refuse('bad_value', `${String(v)} is no point number`, `faces[${i}]`);
+      if (v < 0 || v >= count / 3) refuse('bad_faces', `point ${v} is not one of the ${count / 3}`, `faces[${i}]`);
       words[(vertices >> 2) + next++] = v;
     }
   }
@@ -174,7 +178,7 @@ export class Solid extends Shape {
   constructor(points, faces, options = {}) {
     super(made('pdepth_mesh_solid', () => {
       allowOnly(options, ['turnFaces'], 'options');
-      return [writeFaces(points, faces), options.turnFaces ? 1 : 0];
+      return [writeFaces(points, faces), options?.turnFaces ? 1 : 0];
     }));
   }
 }

@@ -104,6 +104,11 @@ test('solids of meshes', () => {
   refused(() => new Solid(ring.points, inside, {turn: true}), 'bad_value', 'options.turn');
   refused(() => new Solid(ring.points.map((p, i) => i === 4 ? [0, NaN, 0] : p), ring.faces), 'non_finite', 'points[4]');
   refused(() => new Solid(ring.points, [[0, 1, 0.5]]), 'bad_value', 'faces[0]');
+  refused(() => new Solid(ring.points, [[0, 1, 2], [0, 1, 99]]), 'bad_faces', 'faces[1]');
+  refused(() => new Solid([], [[0, 1, 2]]), 'bad_faces', 'faces[0]');
+  refused(() => new Solid([], []), 'too_few_points', 'points');
+  refused(() => new Convex([[0, NaN, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]), 'non_finite', 'points[0]');
+  refused(() => new Compound([{shape: cube, pose: [NaN, 0, 0]}]), 'non_finite', 'parts[0].pose.position[0]');
   refused(() => new Solid(ring.points, new Uint16Array(4)), 'bad_value', 'faces');
   refused(() => pdepth.manifold(solid, null, cube, null), 'unsupported', 'a');
   refused(() => cube.describe('mesh'), 'out_of_range', 'part');
@@ -153,6 +158,21 @@ test('wrong input is refused by name and place', () => {
   refused(() => pdepth.depthBatch({a: cube, b: cube, count: -1}), 'bad_value', 'count');
   refused(() => pdepth.depthBatch({a: cube, b: cube, count: 2 ** 28}), 'out_of_memory', '');
   assert.equal(pdepth.depth(cube, null, cube, null).depth, 1);  // the library lives on
+});
+
+test('no number and no other object is taken for a shape, a pair or settings', () => {
+  refused(() => new Shape(12345), 'bad_value', '');
+  refused(() => new (class extends Shape { constructor() { super(16); } })(), 'bad_value', '');
+  for (const pair of [cube, {}, 'x', 0]) refused(() => pdepth.depth(cube, null, cube, null, {pair}), 'bad_value', 'pair');
+  for (const options of ['contact', 3, true]) refused(() => pdepth.depth(cube, null, cube, null, options), 'bad_value', 'options');
+  refused(() => pdepth.timeOfImpact(cube, null, cube, [5, 0, 0]), 'bad_value', 'movement');
+  refused(() => pdepth.timeOfImpact(cube, null, cube, [5, 0, 0], {a: 3, duration: 1}), 'bad_value', 'movement.a');
+  refused(() => pdepth.depthBatch({a: cube, b: cube, poseA: [5, 0, 0]}), 'bad_value', 'batch.poseA');
+  refused(() => pdepth.depthBatch(), 'bad_value', 'a');
+  refused(() => pdepth.depthBatch({a: cube, b: cube, posesA: [1, 2, 3], formA: 'constructor'}), 'bad_value', 'formA');
+  refused(() => new Cone(1, 1, 'constructor'), 'bad_value', 'axis');
+  refused(() => cube.pointsOf(), 'bad_value', 'feature');
+  refused(() => cube.pointsOf({kind: 'vertex', part: 0, first: 'a'}), 'bad_value', 'feature.first');
 });
 
 test('use after free is an error, and a second free is none', () => {
