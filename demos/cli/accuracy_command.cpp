@@ -128,7 +128,7 @@ int run_accuracy_command(AccuracyArguments arguments) {
   if (!arguments.report.empty() &&
       !report::write_page(arguments.report,
                           audit::accuracy_page(table, arguments.settings, judge, command_of(arguments)))) {
-    return cannot_write({"--report", arguments.report + "/report.html"});
+    return cannot_write_page(arguments.report);
   }
   if (!arguments.report.empty()) fmt::print("\npage: {}/report.html\n", printable(arguments.report));
   return table.any_failed() ? kBadUsage : kDone;

@@ -126,8 +126,7 @@ int run_audit(AuditArguments arguments) {
   }
   if (!arguments.report.empty()) {
     const report::Page page = audit::audit_report(result, outcomes, arguments.input, command_of(arguments));
-    if (!report::write_page(arguments.report, page))
-      return cannot_write({"--report", arguments.report + "/report.html"});
+    if (!report::write_page(arguments.report, page)) return cannot_write_page(arguments.report);
   }
   const std::string text =
       arguments.json

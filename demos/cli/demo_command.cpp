@@ -11,6 +11,7 @@
 #include <string>
 
 #include "commands.hpp"
+#include "options.hpp"
 #include "support/complain.hpp"
 #include "support/demo_options.hpp"
 #include "support/refusal.hpp"
@@ -86,10 +87,7 @@ int run_with_report(const DemoArguments& arguments, std::span<const demo::Demo> 
     options.page_folder = std::string(demo.name);
     if (const int code = demo.run(options); code != kDone) return code;
   }
-  if (!report::write_page(arguments.report, page)) {
-    complain("{}/report.html cannot be written", arguments.report);
-    return kFailed;
-  }
+  if (!report::write_page(arguments.report, page)) return cannot_write_page(arguments.report);
   fmt::print("Page: {}/report.html\n", printable(arguments.report));
   return kDone;
 }

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -130,10 +132,14 @@ std::string completion_case(const std::string& pattern, const std::vector<std::s
 int write_manual_pages(const CLI::App& app, const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
+  if (error) {
+    complain("{} cannot be made: {}", folder, error.message());
+    return kFailed;
+  }
   const auto write = [&](const std::string& name, const std::string& text) {
     const std::string file = std::filesystem::path(folder) / (name + ".1");
     if (write_whole_file(file, text)) return true;
-    complain("{} cannot be written", file);
+    complain("{} cannot be written: {}", file, std::strerror(errno));
     return false;
   };
   if (!write("pdepth", overview_page(app))) return kFailed;

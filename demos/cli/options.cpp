@@ -114,6 +114,11 @@ int cannot_write(const Output& output) {
   return kFailed;
 }
 
+int cannot_write_page(const std::string& folder) {
+  complain("{}", not_written({"--report", folder + "/report.html"}, std::strerror(errno)));
+  return kFailed;
+}
+
 void print_row(std::string_view name, const std::string& value) { fmt::print("  {:<13} {}\n", name, printable(value)); }
 
 std::string duration_in_words(std::int64_t nanoseconds) {

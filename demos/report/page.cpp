@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -130,6 +131,10 @@ bool write_page(const std::string& folder, const Page& page) {
   const std::filesystem::path path = std::filesystem::path(folder) / kPageName;
   std::error_code error;
   std::filesystem::create_directories(folder, error);
+  if (error) {
+    errno = error.value();
+    return false;
+  }
   if (std::filesystem::is_symlink(path, error)) std::filesystem::remove(path, error);
   return write_whole_file(path, to_html(page));
 }

@@ -91,6 +91,23 @@ TEST_F(Outputs, FullFilesAreOne) {
   }
 }
 
+/// In /sys nobody makes files, root neither. The reason depends on how it is mounted, and is none of those of missing
+/// names.
+TEST_F(Outputs, APlaceWhereNobodyMayWriteIsTold) {
+  if (!std::filesystem::is_directory("/sys")) GTEST_SKIP() << "/sys is not here";
+  for (const char* arguments : {"query lines.jsonl --record /sys/pdepth_x", "audit record.jsonl --report /sys/pdepth_x",
+                                "audit record.jsonl --junit /sys/pdepth_x", "help --man /sys/pdepth_x",
+                                "depth cube.obj cube.obj --picture /sys/pdepth_x.png"}) {
+    EXPECT_EQ(run(arguments + std::string(" > out")), 1) << arguments;
+    const std::string told = read("err");
+    EXPECT_TRUE(told.find("Permission denied") != std::string::npos ||
+                told.find("Operation not permitted") != std::string::npos ||
+                told.find("Read-only file system") != std::string::npos)
+        << arguments << "\n"
+        << told;
+  }
+}
+
 TEST_F(Outputs, AMissingFolderIsNotMade) {
   std::filesystem::create_directory(path() / "folder");
   for (const std::string arguments :

@@ -42,10 +42,11 @@ bool ends_within_a_line(int file) {
 LineRecorder::LineRecorder(RecordSettings settings) : settings_(std::move(settings)) {
   if (!active()) return;
   file_ = ::open(settings_.path.c_str(), O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
-  if (file_ < 0) file_ = ::open(settings_.path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);  // a pipe, or not to be read
   if (file_ < 0) {
     reason_ = errno;
-    return;
+    file_ = ::open(settings_.path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);  // a pipe, or not to be read
+    if (file_ < 0) return;  // the first reason: this call makes no file
+    reason_ = 0;
   }
   const FileLock lock(file_);
   if (ends_within_a_line(file_) && !write_all(file_, "\n")) reason_ = errno;

@@ -2,6 +2,8 @@
 /// PNG through libpng's simplified reader and a writer set for speed: frames are written by the hundred.
 #include <png.h>
 
+#include <cerrno>
+#include <cstring>
 #include <string>
 #include <system_error>
 
@@ -19,12 +21,13 @@ Error refusal(const std::filesystem::path& path, const std::string& reason) {
 
 Expected<std::filesystem::path> write_png(const Image& image, const std::filesystem::path& path) {
   if (path.has_parent_path()) {
-    std::error_code ignored;  // the open below tells
-    std::filesystem::create_directories(path.parent_path(), ignored);
+    std::error_code error;
+    std::filesystem::create_directories(path.parent_path(), error);
+    if (error) return refusal(path, "cannot be written: " + error.message());
   }
   WholeFile file(path);
   if (!file.good()) {
-    return refusal(path, "cannot be written");
+    return refusal(path, std::string("cannot be written: ") + std::strerror(errno));
   }
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
   png_infop info = png_create_info_struct(png);
