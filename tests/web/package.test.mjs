@@ -277,4 +277,8 @@ test('the types name what the module exports', () => {
   const types = readFileSync('node_modules/pdepth/index.d.ts', 'utf8');
   const declared = new Set([...types.matchAll(/^export (?:abstract )?(?:class|function|const) (\w+)/gm)].map(found => found[1]));
   assert.deepEqual([...declared].sort(), Object.keys(pdepth).sort());
+  // Compilers that resolve modules as Node 10 did look for the types of a folder's modules here.
+  const {exports, typesVersions} = JSON.parse(readFileSync('node_modules/pdepth/package.json', 'utf8'));
+  const typed = Object.keys(exports).filter(name => exports[name].types && name !== '.').map(name => name.slice(2));
+  assert.deepEqual(Object.keys(typesVersions['*']).sort(), typed.sort());
 });
