@@ -6,13 +6,16 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <optional>
 
 #include "audit/audit_stream.hpp"
 #include "audit/contact_figure.hpp"
+#include "support/refusal.hpp"
 
 namespace pd::audit {
 
@@ -44,22 +47,14 @@ std::optional<std::string> output_of(const std::string& command) {
 /// A file for a record, gone with it.
 class RecordFile {
  public:
-  RecordFile() : path_((std::filesystem::temp_directory_path() / "pdepth_record_XXXXXX").string()) {
-    descriptor_ = ::mkstemp(path_.data());
-  }
-  ~RecordFile() {
-    if (descriptor_ < 0) return;
-    ::close(descriptor_);
-    ::unlink(path_.c_str());
-  }
+  RecordFile() : path_(make_temporary_file("pdepth_record")) {}
+  ~RecordFile() { ::unlink(path_.c_str()); }
   RecordFile(const RecordFile&) = delete;
   RecordFile& operator=(const RecordFile&) = delete;
   [[nodiscard]] const std::string& path() const { return path_; }
-  [[nodiscard]] bool good() const { return descriptor_ >= 0; }
 
  private:
   std::string path_;
-  int descriptor_;
 };
 
 double error_of(const Judgement& judgement) {
@@ -118,6 +113,20 @@ void AccuracyRow::add(const AccuracyRow& other) {
   worst = std::max(worst, other.worst);
 }
 
+std::string make_temporary_file(const std::string& name) {
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
+  if (error) query::refuse("unreadable_file", "TMPDIR names no folder for temporary files", "");
+  std::string path = (folder / (name + "_XXXXXX")).string();
+  const int descriptor = ::mkstemp(path.data());
+  if (descriptor < 0) {
+    query::refuse("unreadable_file",
+                  fmt::format("{}: no temporary file can be made: {}", folder.string(), std::strerror(errno)), "");
+  }
+  ::close(descriptor);
+  return path;
+}
+
 std::vector<std::string> engines_of(const std::string& program) {
   std::vector<std::string> engines;
   const std::string text = output_of("exec " + quoted(program) + " --list").value_or("");
@@ -140,7 +149,7 @@ AccuracyRow run_accuracy(const std::string& program, const std::string& engine, 
   const auto text = output_of("exec " + quoted(program) + " --engine " + quoted(engine) + pairs + " --pairs " +
                               std::to_string(settings.pairs) + " --vertices " + std::to_string(settings.vertices) +
                               " --seed " + std::to_string(settings.seed) + " --out " + quoted(file.path()));
-  row.failed = !file.good() || !text;
+  row.failed = !text;
   if (row.failed) return row;
   // Nanoseconds a query and, from programs that survive that, how often the engine aborted: pairs without a line.
   char* rest = nullptr;

@@ -61,6 +61,10 @@ struct AccuracyRow {
 /// Empty where the program does not run.
 [[nodiscard]] std::vector<std::string> engines_of(const std::string& program);
 
+/// Makes an empty file among the temporary ones, whose name begins as told. @throws query::Refusal where there is no
+/// folder for them, or none that takes a file
+[[nodiscard]] std::string make_temporary_file(const std::string& name);
+
 /// Seconds of processor time after which a recorder is ended.
 inline constexpr int kRecorderSeconds = 120;
 

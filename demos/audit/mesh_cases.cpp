@@ -122,13 +122,11 @@ std::string contact_line(const Hull& a, const Hull& b, int depth, int number, st
 
 }  // namespace
 
-MeshCases::MeshCases(const std::string& folder, const AccuracySettings& settings)
-    : path_((std::filesystem::temp_directory_path() / "pdepth_meshes_XXXXXX").string()) {
+MeshCases::MeshCases(const std::string& folder, const AccuracySettings& settings) {
   const std::vector<Hull> hulls = hulls_of(folder, complaints_);
   if (hulls.empty()) complaints_.push_back(folder + " holds no mesh that can be read");
-  const int descriptor = hulls.empty() ? -1 : ::mkstemp(path_.data());
-  if (descriptor < 0) return;
-  ::close(descriptor);
+  if (hulls.empty()) return;
+  path_ = make_temporary_file("pdepth_meshes");
   std::ofstream file(path_, std::ios::binary);
   file << "{\"record\":\"pdepth-contacts/1\",\"engine\":\"nobody\",\"scalar\":\"float64\"}\n";
   for (const Hull& hull : hulls) file << shape_line(hull);

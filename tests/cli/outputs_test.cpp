@@ -108,6 +108,25 @@ TEST_F(Outputs, APlaceWhereNobodyMayWriteIsTold) {
   }
 }
 
+TEST_F(Outputs, AMissingFolderForTemporaryFilesIsTold) {
+  write("recorder", "#!/bin/sh\n[ \"$1\" != --list ] || echo somebody\n");
+  std::filesystem::permissions(path() / "recorder", std::filesystem::perms::owner_all);
+  const char* const before = std::getenv("TMPDIR");
+  const std::string kept = before == nullptr ? "" : before;
+  for (const std::string folder : {"/nowhere", "/sys"}) {
+    ::setenv("TMPDIR", folder.c_str(), 1);
+    EXPECT_EQ(run("accuracy --recorder ./recorder --pairs 1 --families box > out"), 2);
+    EXPECT_NE(read("err").find(folder == "/sys" ? "/sys: no temporary file" : "TMPDIR names no folder"),
+              std::string::npos)
+        << read("err");
+  }
+  if (before == nullptr) {
+    ::unsetenv("TMPDIR");
+  } else {
+    ::setenv("TMPDIR", kept.c_str(), 1);
+  }
+}
+
 TEST_F(Outputs, AMissingFolderIsNotMade) {
   std::filesystem::create_directory(path() / "folder");
   for (const std::string arguments :
