@@ -24,30 +24,48 @@ void for_each_row(std::int64_t count, int threads, Row&& row) {
       count, threads, []() -> Workspace& { return workspace(); }, row);
 }
 
+/// Poses of the rows, one for each or one for all: matrices [n, 4, 4], or an array of poses as the caller made them.
+class RowPoses {
+ public:
+  RowPoses(py::handle poses, const char* argument) {
+    if (py::isinstance<py::array>(poses) && py::reinterpret_borrow<py::array>(poses).dtype().kind() == 'O') {
+      for (const py::handle pose : poses) made_.push_back(pose.cast<const Pose&>());
+    } else {
+      matrices_ = read_array(poses, argument, {-1, 4, 4});
+    }
+  }
+  [[nodiscard]] std::int64_t count() const {
+    return made_.empty() ? matrices_.shape(0) : static_cast<std::int64_t>(made_.size());
+  }
+  [[nodiscard]] Expected<Pose> of_row(std::int64_t i) const {
+    const std::int64_t place = count() == 1 ? 0 : i;
+    if (!made_.empty()) return made_[static_cast<std::size_t>(place)];
+    return pose_of_matrix(matrices_.data() + 16 * place);
+  }
+
+ private:
+  std::vector<Pose> made_;
+  Array matrices_;
+};
+
 /// Bodies or poses of the rows: one for each, or one for all.
 struct Pairs {
   std::vector<BodyRef> a, b;
-  Array poses_a, poses_b;  ///< [n, 4, 4] with n = 1 or the number of rows
+  RowPoses poses_a, poses_b;
   std::int64_t count = 0;
 
   [[nodiscard]] const Body& body_a(std::int64_t i) const { return *a[a.size() == 1 ? 0 : static_cast<std::size_t>(i)]; }
   [[nodiscard]] const Body& body_b(std::int64_t i) const { return *b[b.size() == 1 ? 0 : static_cast<std::size_t>(i)]; }
-  [[nodiscard]] Expected<Pose> pose_a(std::int64_t i) const { return pose(poses_a, i); }
-  [[nodiscard]] Expected<Pose> pose_b(std::int64_t i) const { return pose(poses_b, i); }
-
- private:
-  static Expected<Pose> pose(const Array& poses, std::int64_t i) {
-    return pose_of_matrix(poses.data() + (poses.shape(0) == 1 ? 0 : 16 * i));
-  }
+  [[nodiscard]] Expected<Pose> pose_a(std::int64_t i) const { return poses_a.of_row(i); }
+  [[nodiscard]] Expected<Pose> pose_b(std::int64_t i) const { return poses_b.of_row(i); }
 };
 
 Pairs read_pairs(std::vector<BodyRef> a, std::vector<BodyRef> b, py::handle poses_a, py::handle poses_b,
                  std::int64_t count) {
-  Pairs pairs{std::move(a), std::move(b), read_array(poses_a, "poses_a", {-1, 4, 4}),
-              read_array(poses_b, "poses_b", {-1, 4, 4}), count};
+  Pairs pairs{std::move(a), std::move(b), RowPoses(poses_a, "poses_a"), RowPoses(poses_b, "poses_b"), count};
   const auto fits = [&](std::int64_t n) { return n == 1 || n == count; };
   if (!fits(static_cast<std::int64_t>(pairs.a.size())) || !fits(static_cast<std::int64_t>(pairs.b.size())) ||
-      !fits(pairs.poses_a.shape(0)) || !fits(pairs.poses_b.shape(0))) {
+      !fits(pairs.poses_a.count()) || !fits(pairs.poses_b.count())) {
     refuse("bad_value", "one of everything, or one a row", "pairs");
   }
   return pairs;

@@ -174,6 +174,21 @@ def test_touching_curved_and_swept_bodies_meet(poses):
     assert pdepth.intersects(BOX, pdepth.Sphere(0.5), pose_b=at(1.5, 0, 0))
 
 
+def test_a_quaternion_is_no_matrix_in_a_batch():
+    # R turns (0, 2wx, ww - xx) to (0, 0, ww + xx) in real arithmetic, and the matrix of doubles does not.
+    w, x = 951794, 440000
+    turned = pdepth.Pose(wxyz=np.array([w, x, 0, 0]) / 2.0**20)
+    top = float(w * w + x * x)
+    shard = pdepth.ConvexPolytope([[0, 0, 0], [2.0**30, 0, 0], [0, 2.0 * w * x, float(w * w - x * x)]])
+    wide = 2.0**45
+    roof = pdepth.ConvexPolytope([[-wide, -wide, top], [wide, -wide, top], [0, wide, top], [0, 0, 2 * wide]])
+    assert pdepth.depth(shard, roof, turned).contact == "touching"
+    assert pdepth.depth(shard, roof, pdepth.Pose(turned.matrix)).contact != "touching"
+    for many in (pdepth.depth([shard] * 3, roof, turned), pdepth.depth(shard, roof, [turned, turned])):
+        assert all(pdepth.CONTACTS[contact] == "touching" for contact in many.contact)
+    assert np.array_equal(pdepth.hull([shard], [turned]).vertices, pdepth.hull(shard, turned).vertices)
+
+
 def test_rows_of_a_batch_by_number(poses):
     found = pdepth.depth(GEM, BOX, poses(6).reshape(2, 3, 4, 4))
     assert found.of_row((1, 2))["depth"] == found.depth[1, 2] and found.of_row(0)["normal"].shape == (3, 3)

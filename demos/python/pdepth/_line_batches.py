@@ -9,7 +9,7 @@ import numpy as np
 from ._core import ERRORS
 from ._errors import number_array, refused
 from ._queries import CONTACTS, Batch, _rows, _threads
-from ._shapes import shape_fields
+from ._shapes import pose_fields, shape_fields
 
 #: Fields that are one vector a row: columns of [n, d]. Every other list is joined, with offsets.
 _VECTORS = {"normal", "translation", "witness_a", "witness_b", "direction", "point"}
@@ -156,6 +156,8 @@ def bodies(a, b, pose_a, pose_b):
         return spread([known[id(shape)] for shape in shapes], count)
 
     def placed(poses):
+        if poses.dtype == object:
+            return spread([json.dumps(pose_fields(pose)) for pose in poses], count)
         whole = (np.asarray(poses)[:, 3] == [0, 0, 0, 1]).all(axis=1)
         made = []
         for matrix, right in zip(np.asarray(poses, dtype=float), whole):

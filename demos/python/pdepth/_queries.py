@@ -90,17 +90,23 @@ _HINTS = {(3,): "; a place alone is Pose(translation=...)", (4,): "; a quaternio
           (7,): "; a quaternion is Pose(wxyz=..., translation=...) or Pose(xyzw=..., translation=...)"}
 
 
+def _made(poses):
+    """Poses in an array as they are: a quaternion stands for numbers that no matrix of doubles holds."""
+    array = np.empty(len(poses), dtype=object)
+    array[:] = poses
+    return array
+
+
 def _stack(pose, argument):
-    """Poses as [n, 4, 4] and their leading dimensions (None for a single one)."""
+    """Poses as [n, 4, 4], or as an array of Pose objects, and their leading dimensions (None for a single one)."""
     from ._shapes import as_pose
 
     if pose is None:
         return _IDENTITY, None
     if _listed(pose):
-        matrices = [as_pose(each, f"{argument}[{i}]").matrix for i, each in enumerate(pose)]
-        return np.array(matrices).reshape((-1, 4, 4)), (len(pose),)
+        return _made([as_pose(each, f"{argument}[{i}]") for i, each in enumerate(pose)]), (len(pose),)
     if isinstance(pose, (tuple, _core.Pose)):
-        return as_pose(pose, argument).matrix[None], None
+        return _made([as_pose(pose, argument)]), None
     try:
         array = np.asarray(pose)
     except ValueError:
@@ -262,7 +268,8 @@ class Manifold(Fields):
     """Points of a contact, k <= 4 of them.
 
     normal: [3], unit, from B to A.
-    position_a, position_b: [k, 3], on the surfaces.
+    position_a, position_b: [k, 3], on the surfaces. With a margin, as capsules have, the face of the core is moved along
+    the normal; where it is not across the normal, all points but the deepest lie a little inside.
     depth: [k], > 0 inside, < 0 a gap.
     feature_id: [k], the same number while the same two features meet.
 
