@@ -113,6 +113,12 @@ TimeOfImpact earliest(const std::vector<PosedShape>& parts_a, const Pose& pose_a
   return first;
 }
 
+/// A gap at the first contact was to be within the tolerance, and not to be known in proportion to itself.
+void tell_reached(const TimeOfImpact& found, PenetrationDepth& contact) {
+  const bool gap = found.hit && contact.contact != ContactClass::overlapping;
+  contact.bracket_reached = found.reached && (gap || contact.bracket_reached);
+}
+
 }  // namespace
 
 void answer_time_of_impact(const Node& line, Session& session, JsonWriter& answer) {
@@ -125,7 +131,7 @@ void answer_time_of_impact(const Node& line, Session& session, JsonWriter& answe
   TimeOfImpact found = time_of_impact({pair.posed_a(), motions.a}, {pair.posed_b(), motions.b}, motions.duration,
                                       session.scratch, settings);
   const std::int64_t nanoseconds = watch.nanoseconds();
-  found.contact.bracket_reached = found.contact.bracket_reached && found.reached;
+  tell_reached(found, found.contact);
   write_time(found.hit, found.time, found.certified, answer);
   write_depth_answer(found.contact, pair.a, pair.b, nanoseconds, answer);
 }
@@ -147,7 +153,7 @@ void answer_union_time_of_impact(const Node& line, Session& session, JsonWriter&
                                   session.scratch, UnionSettings{});
   if (!solved) line.refuse(solved.error());
   UnionDepth contact = std::move(solved).value();
-  contact.bracket_reached = contact.bracket_reached && found.reached;
+  tell_reached(found, contact);
   write_time(found.hit, found.time, found.certified, answer);
   write_union_answer(contact, pair, watch.nanoseconds(), answer);
 }

@@ -30,6 +30,19 @@ TEST(TimeOfImpactQuery, BallsHeadOn) {
   EXPECT_FALSE(reply.contains("bracket_reached"));
 }
 
+TEST(TimeOfImpactQuery, AGapWithinTheToleranceIsWhatWasAsked) {
+  const char* const ellipsoid = R"({"type":"ellipsoid","radii":[0.7,0.8,1.3]})";
+  const std::string cone = R"({"type":"cone","radius":0.7,"half_height":0.5,"axis":"y"})";
+  const std::string two = R"({"type":"compound","parts":[{"shape":)" + cone + R"(},{"shape":)" + cone + "}]}";
+  for (const std::string& other : {cone, two}) {
+    const Json reply = answer(line(ellipsoid, other, R"("pose_a":{"translation":[4,1,0.3],
+        "quaternion_wxyz":[0.36,0.48,0.64,0.48]},"velocity_a":[-3,-0.5,0],"angular_velocity_a":[1,2,3],"duration":3)"));
+    EXPECT_TRUE(reply.at("hit").get<bool>());
+    EXPECT_LE(reply.at("distance").get<double>(), 1e-8);
+    EXPECT_FALSE(reply.contains("bracket_reached"));
+  }
+}
+
 TEST(TimeOfImpactQuery, WithoutAHitTheDepthFieldsAreOfTheEnd) {
   const Json reply =
       answer(line(kBall, kBall, R"("pose_a":{"translation":[3,0,0]},"velocity_a":[1,0,0],"duration":2)"));
