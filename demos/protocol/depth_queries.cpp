@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "pd/depth/difference_queries.hpp"
-#include "pd/depth/linear_separation.hpp"
 #include "pd/depth/polyhedral_depth.hpp"
 #include "pd/solid/solid_depth.hpp"
 #include "protocol/pair_reader.hpp"
@@ -239,15 +238,7 @@ void answer_distance(const Node& line, Session& session, JsonWriter& answer) {
 void answer_intersect(const Node& line, Session& session, JsonWriter& answer) {
   allow_only(line, {"id", "query", "a", "pose_a", "b", "pose_b"});
   const Pair pair = read_pair(line, session.limits);
-  const ConvexPolytope* const a = pair.a.shape.polytope();
-  const ConvexPolytope* const b = pair.b.shape.polytope();
-  if (a != nullptr && b != nullptr && pair.a.shape.margin() == 0 && pair.b.shape.margin() == 0) {
-    const LinearSeparation found = linear_separation(*a, pair.pose_a, *b, pair.pose_b);
-    answer.key("class").string(to_string(found.contact));
-    if (found.strict) answer.key("separating_direction").vector(found.direction);
-    return;
-  }
-  const PenetrationDepth result = penetration_depth(pair.posed_a(), pair.posed_b(), session.scratch);
+  const PenetrationDepth result = penetration_depth(pair.posed_a(), pair.posed_b(), session.scratch, {.beyond = 0});
   answer.key("class").string(to_string(result.contact));
   if (result.contact == ContactClass::separated) {
     // The normal points from B to A. A gap below the rounding of a unit vector may have no direction that separates as
