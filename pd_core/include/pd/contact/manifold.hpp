@@ -6,6 +6,10 @@
 /// to both faces. The depth of a pair is measured along n, so it is never more than the penetration depth, and the
 /// deepest pair is that of the witnesses. Independent of engines and hosts.
 ///
+/// A body with a margin offers the face of its core, moved along n by the margin, and a hull of spheres that of their
+/// centres by their radii. Let t be the angle of the face to the plane across n. Its points but the deepest then lie
+/// inside of the body by up to margin * (1 / cos t - 1), and their depths are as much too small.
+///
 /// Curved bodies offer a flat part where they have one (the disc of a cylinder or cone as 16 points of its rim, the
 /// side as a segment), else the witness point alone. The depth itself is never taken from those points.
 #pragma once
@@ -23,7 +27,7 @@ struct ManifoldBuffers;
 }
 
 struct ContactPoint {
-  Vec3 position_a = Vec3::Zero();  ///< on A's surface
+  Vec3 position_a = Vec3::Zero();  ///< on A's surface, up to what is said of margins
   Vec3 position_b = Vec3::Zero();  ///< on B's surface; position_b - position_a = depth * normal up to rounding
   double depth = 0;                ///< > 0 inside, < 0 a gap.
   /// Stays the same number while the same two features meet (vertex of A, vertex of B, or a crossing of two edges), so
@@ -52,8 +56,8 @@ class ManifoldScratch {
 
 /// The depth that the deepest of the four points reports.
 enum class DeepestPoint : std::uint8_t {
-  /// The bodies' own depth, and every point lies on both bodies: up to 1e-8 of the lengths at hand, and as near as the
-  /// answer's bracket is wide.
+  /// The bodies' own depth, and every point lies on both bodies (their cores, moved by the margins): up to 1e-8 of the
+  /// lengths at hand, and as near as the answer's bracket is wide.
   on_bodies,
   /// The bodies' own depth, for engines. Two edges within 3 degrees of each other share a stretch. The deepest corner
   /// counts as the witness where it misses the depth by the noise of a resting contact.
