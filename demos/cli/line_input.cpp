@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -67,7 +68,7 @@ bool InputFile::is_also(const std::string& output) const {
 }
 
 int cannot_read(const std::string& path, int reason) {
-  complain("{}: {}", path, std::strerror(reason));
+  complain("{}: {}", path, reason == ENOENT ? "there is no such file" : std::strerror(reason));  // as files of meshes
   return kBadUsage;
 }
 

@@ -108,6 +108,13 @@ TEST_F(Outputs, APlaceWhereNobodyMayWriteIsTold) {
   }
 }
 
+TEST_F(Outputs, AMissingInputIsToldInTheSameWords) {
+  for (const char* command : {"depth none.obj cube.obj", "check none.obj", "query none.obj", "audit none.obj"}) {
+    EXPECT_EQ(run(command + std::string(" > out")), 2) << command;
+    EXPECT_NE(read("err").find("none.obj: there is no such file"), std::string::npos) << command << read("err");
+  }
+}
+
 TEST_F(Outputs, AMissingFolderForTemporaryFilesIsTold) {
   write("recorder", "#!/bin/sh\n[ \"$1\" != --list ] || echo somebody\n");
   std::filesystem::permissions(path() / "recorder", std::filesystem::perms::owner_all);
