@@ -196,7 +196,7 @@ TEST_F(Newcomer, IsToldWhatIsWrongAndWhatWouldBeRight) {
       {"pdepth query --record-above 3 lines.jsonl", "--record-above requires --record"},
       {"pdepth depth a b --direction 1,0,0 --method grid", "--direction and --method do not go together"},
       {"pdepth polygon list.json list.json", R"(the file must be one JSON object, {"outer": [[x,y],...]})"},
-      {"pdepth minimise none.jsonl --predicate true", "none.jsonl: No such file"},
+      {"pdepth minimise none.jsonl --predicate true", "none.jsonl: there is no such file"},
       {"pdepth accuracy --recorder none", "none: no recorder"},
       {"pdepth accuracy --seed -1", "--seed: -1 must lie in [0, 9007199254740992]"},
       {"pdepth accuracy --seed 99999999999999999999999", "must lie in [0, 9007199254740992]"},
