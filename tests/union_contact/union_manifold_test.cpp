@@ -164,16 +164,18 @@ TEST_F(UnionManifolds, ASlenderBodyThroughASheetHasAContact) {
   // Of each triangle alone the shortest way leads over an inner edge, which the next triangle covers.
   const PieceBody floor = *PieceBody::of_sheet(floor_of_cells().view());
   const ConvexShape needle = *ConvexPolytope::from_points(std::vector<Vec3>{{0, 0, -0.2}, {0.03, 0.05, 0.8}});
-  const ConvexShape pin = *ConvexShape::capsule(0.01, 0.5, 2);
+  const ConvexShape pin = *ConvexShape::capsule(0.01, 0.5, 2), bar = *ConvexShape::capsule(0.01, 0.2, 0);
   for (const bool one_sided : {false, true}) {
     settings_.one_sided = one_sided;
     for (int i = 0; i < 100; ++i) {
       SCOPED_TRACE(i);
       const double x = 0.0049 * i, y = 0.0031 * i;
       const PieceBody thin = PieceBody::of_compound(Compound(needle)), round = PieceBody::of_compound(Compound(pin));
+      const PieceBody jack = PieceBody::of_compound(*Compound::from_parts({{needle, Pose()}, {bar, at(0, 0, 0.3)}}));
       const UnionManifold sharp = ask({&thin, at(x, y, 0)}, {&floor, Pose()});
       const UnionManifold blunt = ask({&round, at(x, y, 0.31)}, {&floor, Pose()});
-      for (const UnionManifold* found : {&sharp, &blunt}) {
+      const UnionManifold crossed = ask({&jack, at(x, y, 0)}, {&floor, Pose()});
+      for (const UnionManifold* found : {&sharp, &blunt, &crossed}) {
         ASSERT_FALSE(found->patches.empty());
         EXPECT_LT((found->normal - Vec3::UnitZ()).norm(), 1e-9);
         EXPECT_NEAR(found->patches[0].points[0].contact.depth, 0.2, 1e-9);

@@ -166,7 +166,7 @@ void Asked::add_front(int i, const OneSided::Behind& behind) {
   PieceAmong around_a(a_, i), around_b(b_, behind.triangle);
   PiecePair pair = pair_of(around_a, around_b, a, b);
   pair.front = behind.front;
-  add(i, behind.triangle, along_front(pair, a_.size() > 1 ? FrontPoints::over_triangle : FrontPoints::any));
+  add(i, behind.triangle, along_front(pair, FrontPoints::any));
 }
 
 Vec3 Asked::side_of(int j, const Vec3& middle) {
