@@ -26,6 +26,7 @@ struct SheetMemory {
   };
   std::vector<KnownFront> fronts;  ///< sorted by triangle
   std::vector<LastPose> poses;     ///< of all children
+  double behind = 0;               ///< how far the body was to be led back
   [[nodiscard]] bool empty() const { return fronts.empty() && poses.empty(); }
 };
 

@@ -77,8 +77,6 @@ class MeshContacts final : public UnionContacts {
   static bool may_come_to_rest(const UnionQuestion& question);
   /// The triangles that one of the children is asked about.
   void choose_triangles(int place, const TrianglesAround& around, StandingStill& standing);
-  /// Tells which child's sides of triangles are asked for next.
-  void enter_sides(const UnionQuestion& question, const Child& child, const BodyReach& reach);
   /// Sets how far the children reach.
   void reach_out(const UnionQuestion& question);
   /// Widens the reach of children that leap over themselves in a step, and so may be through a sheet as a whole, by as
@@ -146,12 +144,13 @@ void MeshContacts::reach_out(const UnionQuestion& question) {
 void MeshContacts::reach_back(const UnionQuestion& question) {
   const StepLeap step(question, (upper_ - lower_).length());
   way_ = step.way();
+  const auto behind = static_cast<btScalar>(question.memory.sheet.behind);
   const btTransform& pose = question.b.getWorldTransform();
   const btScalar reach = question.b.getCollisionShape()->getMargin() + question.threshold;
   for (std::size_t i = 0; i < children_.size(); ++i) {
     const btVector3 box = reaches_[i].upper() - reaches_[i].lower() - btScalar(2) * btVector3(reach, reach, reach);
     const btVector3 middle = pose * (btScalar(0.5) * (reaches_[i].lower() + reaches_[i].upper()));
-    const btScalar back = step.over_itself(middle, box, pose.getBasis(), children_.size() == 1);
+    const btScalar back = step.over_itself(middle, box, pose.getBasis(), children_.size() == 1) + behind;
     if (back <= 0) continue;
     const Child& child = children_[i];
     reaches_[i] =
@@ -204,6 +203,7 @@ void MeshContacts::add_fronts(const btCollisionObjectWrapper& a, const UnionQues
     }
     const ContactManifold points =
         along_front(question.of_pieces(a, triangle.wrapper()).as(answer.a, answer.b, behind.front));
+    for (int k = 0; k < points.count; ++k) sides_.lead(points.points[static_cast<std::size_t>(k)].depth);
     patches.add(points, behind.triangle, part_of(children_[static_cast<std::size_t>(met.child)], met), met.index);
   }
 }
@@ -263,13 +263,6 @@ bool MeshContacts::find(const UnionQuestion& question, Patches& patches) {
     sides_.end(memory.sheet);
   }
   return true;
-}
-
-void MeshContacts::enter_sides(const UnionQuestion& question, const Child& child, const BodyReach& reach) {
-  const btTransform& pose = question.b.getWorldTransform();
-  const Vec3 middle = to_pd(pose * (btScalar(0.5) * (reach.lower() + reach.upper())));
-  sides_.enter(child.index, pose.inverseTimes(child.pose), to_pd(pose), middle, way_,
-               static_cast<double>(question.threshold));
 }
 
 bool MeshContacts::stand_still(const UnionQuestion& question) {
@@ -430,7 +423,10 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, Patches& pa
   const ChildInResult piece(question.result, question.a, child);
   const btCollisionObjectWrapper& a = piece.wrapper();
   const auto threshold = static_cast<double>(question.threshold);
-  if (!one_sided) enter_sides(question, child, reach);
+  if (!one_sided) {
+    const Vec3 middle = to_pd(pose * (btScalar(0.5) * (reach.lower() + reach.upper())));
+    sides_.enter(child.index, pose.inverseTimes(child.pose), to_pd(pose), middle, way_, threshold);
+  }
   const auto met_of_child = std::span<const MetTriangle>(triangles_).subspan(first);
   ChildOnGround standing({question, a, is_part(a) ? a.m_index : -1, met_of_child, one_sided ? nullptr : &sides_},
                          memory.shape_of_child(0, child.index));
@@ -439,8 +435,7 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, Patches& pa
     if (!memory.standing.empty()) memory.standing.set_flat(static_cast<std::size_t>(place));
     return true;
   }
-  // What stood on flat ground stands over an edge of it now: all are asked again in the next step.
-  if (still_ && !asked_one_by_one) memory.standing.forget();
+  if (still_ && !asked_one_by_one) memory.standing.forget();  // it stands over an edge of flat ground now
   one_sided_.clear();
   const bool gentle = begin_gentle(a, question, place);
   for (std::size_t i = first; i < triangles_.size(); ++i) {
@@ -469,11 +464,16 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, Patches& pa
         continue;
       }
     }
-    one_sided_.add_way_of(answer.depth);
     ContactManifold points;
     AskedPieces pieces = question.of_pieces(a, triangle.wrapper());
     const PiecePair pair = pieces.as(answer.a, answer.b, front);
     count_covered(keep_uncovered(pair, answer.depth, AnswerPoints::to_be_made, points), buffers);
+    // Siblings may turn a part's contact to the side where the whole is.
+    if (!one_sided && !is_part(a) && points.count > 0 && sides_.leads_back(points.normal)) {
+      one_sided_.add_behind(static_cast<int>(i), sides_.front());
+      continue;
+    }
+    one_sided_.add_way_of(answer.depth);
     if (points.count == 0 && is_piece(a)) {
       straddled_.note({place, static_cast<int>(i)}, -answer.depth.signed_distance(), points);
     }

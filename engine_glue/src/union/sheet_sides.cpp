@@ -69,6 +69,7 @@ void SheetSides::begin(const SheetMemory& memory) {
   memory_ = &memory;
   fresh_.clear();
   poses_.clear();
+  behind_ = 0;
 }
 
 void SheetSides::enter(int child, const btTransform& pose, const Pose& mesh, const Vec3& middle, double way,
@@ -90,7 +91,7 @@ void SheetSides::enter(int child, const btTransform& pose, const Pose& mesh, con
     last_pose_ = pose;
     before_ = now;
   }
-  fast_ = known_ && way > reach;
+  fast_ = known_ && (way > reach || memory_->behind > 0);
 }
 
 Vec3 SheetSides::before(const Vec3& place) const {
@@ -128,11 +129,13 @@ Vec3 SheetSides::judge(const MetTriangle& met, const Vec3& normal, std::span<con
   const bool overlapping = answer.depth.contact == ContactClass::overlapping;
   const bool within = answer.depth.signed_distance() <= reach_;
   const double cosine = (mesh_.rotation() * normal).dot(answer.depth.normal);
+  front_ = Vec3::Zero();
   if (std::abs(cosine) < kOverEdge || (!within && !fast_)) return Vec3::Zero();
+  const bool aligned = std::abs(cosine) > kOfOneWay;
   const Vec3 side = cosine > 0 ? normal : Vec3(-normal);
   Vec3 front = front_of(triangle, normal);
   const bool was_over = !front.isZero();
-  bool sure = true;
+  bool sure = true, came_through = false;
   if (!was_over && known_ && (overlapping || fast_)) {
     const Vec3 came = before(answer.depth.witness_a);
     const auto in_mesh = [&](const Vec3& place) -> Vec3 {
@@ -143,28 +146,30 @@ Vec3 SheetSides::judge(const MetTriangle& met, const Vec3& normal, std::span<con
     const Vec3 met_at = in_mesh(answer.depth.witness_b);
     const Vec3 place = met_at - normal.dot(met_at - corner) * normal;
     const bool comes_through = side.dot(now - came) > 0;
-    const bool crossed = !overlapping && std::abs(cosine) > kOfOneWay && crosses_plane(came, now, normal, met);
+    const bool crossed = !overlapping && crosses_plane(came, now, normal, met);
     if (overlapping || crossed) {
       front = beside(std::span(fresh_).subspan(first_of_child_), normal, place);
-      if (front.isZero() && comes_through) front = beside(memory_->fronts, normal, place);
+      if (front.isZero() && (comes_through || memory_->behind > 0)) front = beside(memory_->fronts, normal, place);
     }
     if (front.isZero() && overlapping && comes_through && side.dot(before_ - corner) < 0 &&
         is_over_one(before_, normal, around)) {
       front = -side;
     }
-    if (front.isZero() && crossed) {
+    if (crossed) {
       // A body that crossed the plane where no triangle is known came through a triangle or around a rim.
-      sure = leads_through_one(came, now, normal, around);
-      if (sure) front = -side;
+      came_through = leads_through_one(came, now, normal, around);
+      sure = came_through || !front.isZero();
+      if (came_through && front.isZero()) front = -side;
     }
   }
-  const bool through = front.dot(side) < 0 && (overlapping || std::abs(cosine) > kOfOneWay);
+  const bool through = front.dot(side) < 0 && (overlapping || aligned || came_through);
+  front_ = mesh_.rotation() * (front.isZero() ? side : front);
   if (!through && !within) return Vec3::Zero();
   if (through) {
     keep(triangle, front, corner);
-    return mesh_.rotation() * front;
+    return front_;
   }
-  if (sure && (std::abs(cosine) > kOfOneWay || was_over)) keep(triangle, side, corner);
+  if (sure && (aligned || was_over)) keep(triangle, side, corner);
   return Vec3::Zero();
 }
 
@@ -173,6 +178,7 @@ void SheetSides::end(SheetMemory& memory) {
   if (!std::is_sorted(fresh_.begin(), fresh_.end(), earlier)) std::stable_sort(fresh_.begin(), fresh_.end(), earlier);
   memory.fronts.swap(fresh_);
   memory.poses.swap(poses_);
+  memory.behind = behind_;
 }
 
 }  // namespace pd::detail

@@ -6,13 +6,14 @@
 /// for each triangle that a body stood over or touched in the last step, the side that it was on (its front), and
 /// contacts that lead back to the other side are replaced by the way out of the front (`along_front`). A triangle that
 /// is new takes after known ones of nearly its direction, where the body meets it near their planes. A body that is
-/// pushed out of those comes back to its side so. Where none is known, the way that the body has come since the last
-/// step decides. What leaves a triangle over an edge is free again, so that bodies go around the rim of a sheet as
-/// ever.
+/// pushed out of those comes back to its side so, and is led on until it is out, however slow it is. Where none is
+/// known, the way that the body has come since the last step decides. What leaves a triangle over an edge is free
+/// again, so that bodies go around the rim of a sheet as ever.
 #pragma once
 
 #include <LinearMath/btTransform.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -54,6 +55,14 @@ class SheetSides {
   void keep(std::uint64_t triangle, const Vec3& front, const Vec3& corner) {
     fresh_.push_back({triangle, front, front.dot(corner)});
   }
+  /// True if a contact with the triangle that was judged last leads off it to its back: one that was turned to another
+  /// facet may.
+  /// @param normal  of the contact, in the world
+  [[nodiscard]] bool leads_back(const Vec3& normal) const { return normal.dot(front_) < 0; }
+  /// The front of that triangle, unit and in the world; zero: not known.
+  [[nodiscard]] const Vec3& front() const { return front_; }
+  /// The child is to be led so far to the front of a triangle.
+  void lead(double depth) { behind_ = std::max(behind_, depth); }
 
   /// Puts what was kept in place of what was known.
   void end(SheetMemory& memory);
@@ -72,6 +81,8 @@ class SheetSides {
   bool known_ = false;              ///< where the child was
   bool fast_ = false;
   double reach_ = 0;
+  double behind_ = 0;
+  Vec3 front_ = Vec3::Zero();  ///< of the triangle that was judged last, in the world
   Pose mesh_;
   btTransform pose_, last_pose_;
   Vec3 before_ = Vec3::Zero();
