@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -138,6 +139,56 @@ TEST(SlopedGround, SlopesOfAGrooveShareAManifold) {
       world.moving(world.bullet.shape<btBoxShape>(vector(0.3, 0.1, 0.1)), vector(0.05, 0.4, 0.02), vector(0, 0, 0));
   world.step(120);
   EXPECT_GT(box->getWorldTransform().getOrigin().y(), 0.1);
+}
+
+/// A field of 10 x 10 with bumps up to 4 times `bump`.
+std::vector<UnionWorld::Triangle> bumpy_field(int cells, double bump) {
+  const auto corner = [&](int i, int k) {
+    return vector(10.0 * i / cells - 5, bump * ((7 * i + 13 * k) % 5), 10.0 * k / cells - 5);
+  };
+  std::vector<UnionWorld::Triangle> triangles;
+  for (int i = 0; i < cells; ++i) {
+    for (int k = 0; k < cells; ++k) {
+      add_rectangle(triangles, corner(i, k), corner(i, k + 1), corner(i + 1, k + 1), corner(i + 1, k));
+    }
+  }
+  return triangles;
+}
+
+TEST(SlopedGround, BodiesThatStartDeepInBumpsComeOutAbove) {
+  // Their middles stand above the bumps, and each is in some hundred triangles at once.
+  std::mt19937 random(11);
+  const auto uniform = [&](double least, double most) {
+    return least + (most - least) * (static_cast<double>(random()) / 4294967296.0);
+  };
+  for (int i = 0; i < 40; ++i) {
+    SCOPED_TRACE(i);
+    const int cells = 8 + static_cast<int>(random() % 16);
+    const double bump = uniform(0.2, 2) / cells, radius = uniform(0.4, 2.8);
+    UnionWorld world;
+    world.fixed(world.mesh(bumpy_field(cells, bump), btScalar(CONVEX_DISTANCE_MARGIN)));
+    btCollisionShape* shape = nullptr;
+    const btVector3 extents = vector(uniform(0.3, 1) * radius, uniform(0.3, 1) * radius, uniform(0.3, 1) * radius);
+    if (i % 3 == 0) {
+      shape = world.bullet.shape<btBoxShape>(extents);
+    } else {
+      auto* hull = world.bullet.shape<btConvexHullShape>();
+      for (int k = 0; k < 12 + i; ++k) {
+        const btVector3 point = vector(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
+        hull->addPoint(point.normalized() * static_cast<btScalar>(radius), false);
+      }
+      hull->recalcLocalAabb();
+      shape = hull;
+    }
+    const btVector3 axis = vector(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
+    const btQuaternion turn(axis.normalized(), static_cast<btScalar>(uniform(0, 6)));
+    const double above = 4 * bump + uniform(0.1, 0.7) * radius;
+    btRigidBody* body =
+        world.moving(shape, btTransform(turn, vector(uniform(-1.5, 1.5), above, uniform(-1.5, 1.5))), vector(0, 0, 0));
+    world.step(60);
+    const btVector3 at = body->getWorldTransform().getOrigin();
+    EXPECT_GT(at.y(), 0) << at.x() << " " << at.z();
+  }
 }
 
 }  // namespace

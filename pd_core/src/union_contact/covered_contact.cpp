@@ -173,6 +173,9 @@ class SideRule {
       if (far <= kBeside * limit) facets.emplace_back(far, f);
     }
     std::sort(facets.begin(), facets.end());
+    // A triangle is left by the nearer of its sides or not at all: it does not lie below a body that would leave it by
+    // the other.
+    if (own.flat && facets.size() > 1) facets.resize(1);
     bool looked = own.flat;
     const auto within =
         std::partition_point(facets.begin(), facets.end(), [&](const auto& facet) { return facet.first <= limit; });
