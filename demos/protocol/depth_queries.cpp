@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "pd/depth/difference_queries.hpp"
+#include "pd/depth/linear_separation.hpp"
 #include "pd/depth/polyhedral_depth.hpp"
 #include "pd/solid/solid_depth.hpp"
 #include "protocol/pair_reader.hpp"
@@ -240,15 +241,20 @@ void answer_intersect(const Node& line, Session& session, JsonWriter& answer) {
   const Pair pair = read_pair(line, session.limits);
   const PenetrationDepth result = penetration_depth(pair.posed_a(), pair.posed_b(), session.scratch, {.beyond = 0});
   answer.key("class").string(to_string(result.contact));
-  if (result.contact == ContactClass::separated) {
-    // The normal points from B to A. A gap below the rounding of a unit vector may have no direction that separates as
-    // stored; then none is claimed.
-    const Vec3 direction = -result.normal;
-    const auto support = support_of_difference(pair.posed_a(), pair.posed_b(), -direction);
-    if (support && support->value < 0) {
-      answer.key("separating_direction").vector(direction);
-    }
+  if (result.contact != ContactClass::separated) return;
+  // The normal points from B to A. A gap below the rounding of a unit vector may have no direction that separates as
+  // stored: of polytopes an exact linear program looks for one, and then none is claimed.
+  Vec3 direction = -result.normal;
+  const auto support = support_of_difference(pair.posed_a(), pair.posed_b(), -direction);
+  bool strict = support && support->value < 0;
+  const ConvexPolytope* const a = pair.a.shape.polytope();
+  const ConvexPolytope* const b = pair.b.shape.polytope();
+  if (!strict && a != nullptr && b != nullptr && pair.a.shape.margin() == 0 && pair.b.shape.margin() == 0) {
+    const LinearSeparation found = linear_separation(*a, pair.pose_a, *b, pair.pose_b);
+    strict = found.strict;
+    direction = found.direction;
   }
+  if (strict) answer.key("separating_direction").vector(direction);
 }
 
 }  // namespace pd::query

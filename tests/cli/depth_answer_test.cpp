@@ -1,5 +1,6 @@
 /// @file
 /// The contract table of the depth answer: every field, in every class.
+#include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
 
 #include "protocol_lines.hpp"
@@ -154,6 +155,37 @@ TEST(IntersectAnswer, SeparatingDirectionSeparates) {
   const Json together = answer(head + at(1, 0, 0) + "}");
   EXPECT_EQ(together.at("class"), "overlapping");
   EXPECT_FALSE(together.contains("separating_direction"));
+}
+
+TEST(IntersectAnswer, CornersAHairApartHaveADirection) {
+  // A corner of B is a corner of A but for one unit in the last place of x: the nearest points' own direction, rounded
+  // to unit length, does not separate the bodies.
+  const std::string line =
+      R"({"query":"intersect","a":{"type":"convex","vertices":[
+         [196320.28239784256,-277106.1158478627,-67176.48618040023],[-70828.486913713,161880.015355857,-131532.7058947834],
+         [-50366.74950392729,247895.78413715816,-100919.5554451536],[-262565.59814109537,35896.741021844224,-54450.24407342388],
+         [53682.25638189714,105960.52420550546,-19483.757887845008],[112649.72559152018,-112342.6902803978,92719.55987680043],
+         [81030.89130365964,41116.90727593404,-228227.65065104593],[126632.50969084348,-79255.03241384462,-1304.5742516338814]]},
+         "b":{"type":"convex","vertices":[
+         [304319.5103378655,-497385.1108799033,-186427.6368595418],[228160.61904158271,-501498.3763068753,-179393.51977147843],
+         [297220.03568889614,-471450.0369749542,-90099.1557448908],[196320.28239784253,-277106.1158478627,-67176.48618040024],
+         [121233.7196496816,-406712.08383683674,305340.1115895016]]}})";
+  std::string one_line = line;
+  std::erase(one_line, '\n');
+  const Json reply = answer(one_line);
+  EXPECT_EQ(reply.at("class"), "separated");
+  ASSERT_TRUE(reply.contains("separating_direction"));
+  using Exact = boost::multiprecision::cpp_rational;
+  const Json question = Json::parse(one_line);
+  const auto along = [&](const Json& vertex) {
+    Exact sum = 0;
+    for (int i = 0; i < 3; ++i)
+      sum += Exact(vertex[i].get<double>()) * Exact(reply.at("separating_direction")[i].get<double>());
+    return sum;
+  };
+  for (const Json& a : question.at("a").at("vertices")) {
+    for (const Json& b : question.at("b").at("vertices")) EXPECT_LT(along(a), along(b));
+  }
 }
 
 TEST(HullAnswer, CubeWithDuplicatesAndInnerPoints) {
