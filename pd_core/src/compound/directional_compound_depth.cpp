@@ -27,7 +27,11 @@ Expected<UnionDirectionalDepth> directional_depth(const PosedCompound& a, const 
   const Expected<UnionPair> pair = UnionPair::pose(a, b);
   if (!pair) return pair.error();
   if (!pair->polytopes) {
-    return Error{ErrorCode::unsupported, "directional depth is for polytopes without a margin", ""};
+    return Error{
+        ErrorCode::unsupported,
+        "the directional depth of a union is for parts that are polytopes without a margin; of two convex bodies "
+        "either may be curved",
+        ""};
   }
   UnionDirectionalDepth out;
   const PairsResult pairs = classify_pairs(*pair, scratch, settings.delta, nullptr, out.work);
