@@ -39,6 +39,6 @@ RefusedValue::RefusedValue(const Error& refusal)
                        ": " + refusal.message),
       error_(refusal) {}
 
-void detail::throw_refused_value(const Error& error) { throw RefusedValue(error); }
+void RefusedValue::raise(const Error& refusal) { throw RefusedValue(refusal); }
 
 }  // namespace pd

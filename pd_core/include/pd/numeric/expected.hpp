@@ -48,15 +48,12 @@ struct Error {
 class RefusedValue : public std::logic_error {
  public:
   explicit RefusedValue(const Error& refusal);
+  [[noreturn]] static void raise(const Error& refusal);
   [[nodiscard]] const Error& error() const { return error_; }
 
  private:
   Error error_;
 };
-
-namespace detail {
-[[noreturn]] void throw_refused_value(const Error& error);
-}  // namespace detail
 
 template <class T>
 class [[nodiscard]] Expected {
@@ -69,11 +66,11 @@ class [[nodiscard]] Expected {
 
   /// Throws RefusedValue without a value; so do `*` and `->`.
   [[nodiscard]] const T& value() const& {
-    if (!has_value()) detail::throw_refused_value(error());
+    if (!has_value()) RefusedValue::raise(error());
     return *std::get_if<0>(&state_);
   }
   [[nodiscard]] T&& value() && {
-    if (!has_value()) detail::throw_refused_value(error());
+    if (!has_value()) RefusedValue::raise(error());
     return std::move(*std::get_if<0>(&state_));
   }
   const T& operator*() const& { return value(); }
