@@ -36,7 +36,7 @@ void check_outputs(std::initializer_list<std::string> inputs, std::initializer_l
 /// Says why an output could not be written, by errno where its name is good. @return kFailed
 int cannot_write(const Output& output);
 
-/// As cannot_write, for the page of --report, whose folder pdepth makes. @return kFailed
+/// Says that the page of --report, whose folder pdepth makes, cannot be written. @return kFailed
 int cannot_write_page(const std::string& folder);
 
 /// A line of an answer for people: its name and its value.

@@ -254,5 +254,17 @@ TEST(SweepTest, AWayAlongAMeshAsksTheTrianglesBesideItAlone) {
   EXPECT_GE(index, 0);
 }
 
+TEST(SweepTest, WaysOfAnyLengthMeetAMesh) {
+  // Places on the way are rounded to more than the shape's size, so that no stretch of the way is as short as that.
+  Field field;
+  const btSphereShape ball(btScalar(0.25));
+  for (const double far : {1e3, 1e6, 1e9, 1e12, 1e15}) {
+    const auto found = sweep_test(field.scene.world(), ball, at(-far, far, 20.3), at(far, -far, 20.3));
+    ASSERT_TRUE(found.has_value());
+    ASSERT_TRUE(found->hit.has_value()) << far;
+    EXPECT_NEAR(found->hit->fraction, 0.5, 1e-2) << far;
+  }
+}
+
 }  // namespace
 }  // namespace pd::test

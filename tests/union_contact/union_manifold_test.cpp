@@ -161,7 +161,7 @@ TEST_F(UnionManifolds, AOneSidedSheetIsLeftByItsFront) {
 }
 
 TEST_F(UnionManifolds, ASlenderBodyThroughASheetHasAContact) {
-  // Of each triangle alone the shortest way leads over an inner edge, which the next triangle covers.
+  // The shortest way off each triangle alone leads over an inner edge, which the next triangle covers.
   const PieceBody floor = *PieceBody::of_sheet(floor_of_cells().view());
   const ConvexShape needle = *ConvexPolytope::from_points(std::vector<Vec3>{{0, 0, -0.2}, {0.03, 0.05, 0.8}});
   const ConvexShape pin = *ConvexShape::capsule(0.01, 0.5, 2), bar = *ConvexShape::capsule(0.01, 0.2, 0);

@@ -12,7 +12,7 @@ namespace pd::detail {
 
 namespace {
 
-/// At least, in the world.
+/// Returns a lower bound of the distance of two boxes, rounding included.
 double distance_between(const ChildBox& a, const ChildBox& b) {
   Vec3 gap = Vec3::Zero();
   double largest = 0;

@@ -62,7 +62,7 @@ class Pieces {
   /// Adds those of a shape. @return false where one has no exact body.
   /// @param part, index  of the pieces. The children of the outermost shape, if it is a compound, count from 0.
   bool add(const btCollisionShape& shape, const btTransform& pose, int part, int index, bool outermost);
-  /// In the order of what their boxes and corners tell about their distances.
+  /// Puts the pieces in the order of their lower bounds of the distance.
   void sort();
 
   std::vector<RegionCandidate> pieces;

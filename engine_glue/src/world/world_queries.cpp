@@ -120,6 +120,7 @@ class Cast {
     settings_.depth.bracket = Bracket::certified;
     length_ = motion_.linear_velocity.norm();
     diameter_ = diameter(sweep.shape, sweep.from);
+    rounded_ = kRounded * (start_.translation().norm() + to_pd(sweep.to.getOrigin()).norm() + diameter_);
     // How far a point leaves the chord between its ends at most: a turning one by r (1 - cos(turn / 2)).
     const double radius = bounding_radius(body_->sharp ? *body_->sharp : *body_->body);
     margin_ = radius * (1 - std::cos(0.5 * motion_.angular_velocity.norm())) + sweep.settings.tolerance;
@@ -128,18 +129,16 @@ class Cast {
   /// Around the shape between two times.
   [[nodiscard]] Region region(double since, double until) const {
     double margin = margin_;
-    if (since > 0 || until < 1) {
-      margin += kRounded * (start_.translation().norm() + to_pd(sweep_.to.getOrigin()).norm() + diameter_);
-    }
+    if (since > 0 || until < 1) margin += rounded_;
     const Box box = box_around(sweep_.shape, at(since), at(until), margin);
     return {box, box, diameter_};
   }
 
-  /// The part of the way in which the triangles of a mesh are looked for at once: as long as the shape, or as a small
-  /// share of the mesh.
+  /// The part of the way in which the triangles of a mesh are looked for at once: as long as the shape, as a small
+  /// share of the mesh, or as what places on the way are rounded by.
   [[nodiscard]] double stretch(const Box& mesh) const {
     constexpr double kStretches = 256;
-    return std::max(diameter_, to_pd(mesh.upper - mesh.lower).norm() / kStretches) / length_;
+    return std::max({diameter_, rounded_, to_pd(mesh.upper - mesh.lower).norm() / kStretches}) / length_;
   }
 
   /// Asks about one piece, which counts if it is hit before `limit`.
@@ -176,6 +175,7 @@ class Cast {
   double length_ = 0;
   double diameter_ = 0;
   double margin_ = 0;
+  double rounded_ = 0;  ///< places between the ends are rounded by less
 };
 
 /// The first hit of one object before a limit. Along a mesh the way is cut into stretches, the first ones first.
@@ -339,7 +339,7 @@ Expected<DistanceResult> distance_test(btCollisionWorld& world, const btConvexSh
   const Expected<Body> body = detail::exact_body(shape, settings.cache);
   if (!body) return body.error();
   const Nearest nearest{world, shape, *body, pose, settings};
-  // What lies farther than an answer is not asked, so that an answer nearby costs the same however far the reach is.
+  // Nothing farther than an answer is asked, so that an answer nearby costs the same however far the reach is.
   double near = std::min(reach, std::max(kNearShare * diameter(shape, pose), settings.tolerance));
   for (;;) {
     bool whole = false;

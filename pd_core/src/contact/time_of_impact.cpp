@@ -225,7 +225,7 @@ TimeOfImpact time_of_impact(const MovingShape& a, const MovingShape& b, double d
   for (;;) {
     result.certified = time;
     const double clearance = pair.clearance();
-    // What doubles cannot tell from contact at the coordinates of the horizon.
+    // Doubles cannot tell a smaller gap from contact at the coordinates of the horizon.
     if (clearance <= std::max(tolerance, 8 * pair.rounding())) {
       if (clearance > settings.distance_tolerance && pair.shorten_horizon(time)) continue;
       return finish(true, time, clearance <= settings.distance_tolerance);
