@@ -78,10 +78,10 @@ int TrianglesAround::read(const btConcaveShape& mesh, const btVector3& lower, co
 
 std::size_t TrianglesAround::find(int part, int index, const btVector3* corners) const {
   const std::uint64_t number = MeshTriangle::number_of(part, index);
-  auto at = std::lower_bound(triangles_.begin(), triangles_.end(), number,
-                             [](const MeshTriangle& x, std::uint64_t n) { return x.number() < n; });
-  for (; at != triangles_.end() && at->number() == number; ++at) {
-    if (std::equal(at->corners, at->corners + 3, corners)) return static_cast<std::size_t>(at - triangles_.begin());
+  const auto first = std::lower_bound(order_.begin(), order_.end(), std::pair(number, std::size_t{0}));
+  for (auto at = static_cast<std::size_t>(first - order_.begin()); at < order_.size() && order_[at].first == number;
+       ++at) {
+    if (std::equal(triangles_[at].corners, triangles_[at].corners + 3, corners)) return at;
   }
   return triangles_.size();
 }

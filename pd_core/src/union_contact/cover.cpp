@@ -1,6 +1,7 @@
 #include "union_contact/cover.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace pd::detail {
 
@@ -17,11 +18,21 @@ void Cover::take_own() {
 }
 
 bool Cover::look_round(const Vec3& foot, const Vec3& n) {
-  // The corners of the window's square are farther than its sides; so are flush surfaces of other margins.
-  const double reach = 1.5 * window_ + slack_;
+  // The corners of the window's square are farther than its sides; so are flush surfaces of other margins. Of a
+  // triangle, only what lies in it is asked about: a deep contact's window holds much more of a mesh.
+  const double reach = 1.5 * (own().flat ? std::min(window_, farthest_corner(foot)) : window_) + slack_;
   const Beyond beyond{n, n.dot(foot) + own().margin + 2 * slack_};
   around_.find({foot, reach, slack_}, n.isZero(0) ? nullptr : &beyond, buffers_.found);
   return !buffers_.found.empty();
+}
+
+double Cover::farthest_corner(const Vec3& foot) const {
+  double squared = 0;
+  const ConvexPolytope& triangle = *own_.shape->polytope();
+  for (int v = 0; v < triangle.num_vertices(); ++v) {
+    squared = std::max(squared, (frame_.place(own_.pose.apply(triangle.vertex(v))) - foot).squaredNorm());
+  }
+  return std::sqrt(squared);
 }
 
 bool Cover::may_be_covered(const Vec3& foot) const {

@@ -80,6 +80,8 @@ class Cover {
     int count = 0;
   };
 
+  /// How far the piece's farthest corner is from a point. Requires: the piece is flat.
+  [[nodiscard]] double farthest_corner(const Vec3& foot) const;
   /// The largest sine of all pieces near at a point of this one's core, or one that is enough.
   double most_covered(const Vec3& point, const Vec3& n, double enough);
   /// @param foot  moved into the piece, and on the facet if there is one
