@@ -1,10 +1,14 @@
 // Bodies that are metres deep in large meshes: what is looked at grows with the triangles, and not with their square.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
-#include <string>
+#include <memory>
+#include <vector>
 
 #include "engine_glue/union_worlds.hpp"
+#include "shapes/triangles_around.hpp"
 
 namespace pd::test {
 namespace {
@@ -129,6 +133,32 @@ TEST_F(DeepInLargeMesh, BallReadsEachTriangleInACompoundFewTimes) {
   world_.step();
   EXPECT_LE(mesh->count, std::int64_t{40} * 2 * kSide * kSide);
   EXPECT_GT(world_.bullet.num_contacts(), 0);
+}
+
+// Ways of bodies that come through a mesh are looked up so.
+TEST_F(DeepInLargeMesh, KnownTrianglesInABoxAreThoseThatMeetIt) {
+  CountedMesh* const mesh = bumpy_mesh();
+  detail::TrianglesAround around;
+  around.read(*mesh, btVector3(-3, -1, -4), btVector3(4, 1, 4));
+  ASSERT_GT(around.triangles().size(), 2000U);
+  mesh->count = 0;
+  std::int64_t visited = 0;
+  for (int i = 0; i < 200; ++i) {
+    const btVector3 lower(btScalar(0.05) * static_cast<btScalar>(i % 90 - 45), 0,
+                          btScalar(0.07) * static_cast<btScalar>(i % 63 - 31));
+    const btVector3 upper = lower + btVector3(btScalar(0.3), btScalar(0.05), btScalar(0.1));
+    std::vector<std::size_t> found, meeting;
+    around.for_each_in(lower, upper, [&](std::size_t place) { found.push_back(place); });
+    for (std::size_t k = 0; k < around.triangles().size(); ++k) {
+      const detail::MeshTriangle& triangle = around.triangles()[k];
+      if (detail::boxes_meet(triangle.lower, triangle.upper, lower, upper)) meeting.push_back(k);
+    }
+    std::sort(found.begin(), found.end());
+    EXPECT_EQ(found, meeting) << i;
+    visited += static_cast<std::int64_t>(found.size());
+  }
+  EXPECT_GT(visited, 400);
+  EXPECT_LT(mesh->count, 2 * visited + 200);
 }
 
 }  // namespace

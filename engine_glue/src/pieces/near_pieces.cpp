@@ -15,13 +15,6 @@
 
 namespace pd::detail {
 
-namespace {
-
-/// Of so few known triangles each is compared; among more, the mesh's tree is asked for those near.
-constexpr std::size_t kFewKnown = 256;
-
-}  // namespace
-
 /// What is collected, where.
 struct NearPieces::Search {
   btVector3 centre;
@@ -129,8 +122,8 @@ bool NearPieces::within(const btVector3& lower, const btVector3& upper, const Se
   return far.sum() > search.beyond->level;
 }
 
-void NearPieces::collect_known(const btConcaveShape& mesh, const btCollisionObjectWrapper& except, Search& search,
-                               const btVector3& lower, const btVector3& upper) {
+void NearPieces::collect_known(const btCollisionObjectWrapper& except, Search& search, const btVector3& lower,
+                               const btVector3& upper) {
   const std::span<const MeshTriangle> triangles = around_->triangles();
   Vec3 n = Vec3::Zero();
   double level = -1;
@@ -138,22 +131,13 @@ void NearPieces::collect_known(const btConcaveShape& mesh, const btCollisionObje
     n = around_pose_.rotation().transpose() * beyond->n;
     level = beyond->level - beyond->n.dot(around_pose_.translation());
   }
-  const auto add = [&](std::size_t i) {
+  around_->for_each_in(lower, upper, [&](std::size_t i) {
     const MeshTriangle& triangle = triangles[i];
     const std::array<Vec3, 3>& corners = around_->corners()[i];
-    if (!boxes_meet(triangle.lower, triangle.upper, lower, upper)) return;
     if (triangle.part == except.m_partId && triangle.index == except.m_index) return;
     if (std::max({n.dot(corners[0]), n.dot(corners[1]), n.dot(corners[2])}) + around_margin_ <= level) return;
     const UnionPiece& piece = known_triangle(i);
     if (!piece.planes.empty()) search.found.push_back(&piece);
-  };
-  if (triangles.size() <= kFewKnown) {
-    for (std::size_t i = 0; i < triangles.size(); ++i) add(i);
-    return;
-  }
-  for_each_triangle(mesh, lower, upper, [&](const btVector3* corners, int part, int index) {
-    const std::size_t i = around_->find(part, index, corners);
-    if (i < triangles.size()) add(i);
   });
 }
 
@@ -180,7 +164,7 @@ void NearPieces::collect(const btCollisionShape& shape, const btTransform& pose,
     const bool known = except != nullptr && except->m_parent->m_parent == nullptr && around_ != nullptr &&
                        around_->cover(concave, local - extent, local + extent);
     if (known) {
-      collect_known(concave, *except, search, local - extent, local + extent);
+      collect_known(*except, search, local - extent, local + extent);
       return;
     }
     const auto margin = static_cast<double>(concave.getMargin());

@@ -15,7 +15,6 @@
 #include "pieces/piece_wrapper.hpp"
 #include "shapes/triangles_around.hpp"
 
-class btConcaveShape;
 class btConvexShape;
 
 namespace pd::detail {
@@ -63,8 +62,8 @@ class NearPieces {
   };
 
   /// Those of the triangles that are known. Requires: they cover what is searched.
-  void collect_known(const btConcaveShape& mesh, const btCollisionObjectWrapper& except, Search& search,
-                     const btVector3& lower, const btVector3& upper);
+  void collect_known(const btCollisionObjectWrapper& except, Search& search, const btVector3& lower,
+                     const btVector3& upper);
   /// The piece of one of them, which is made when it is first asked for.
   UnionPiece& known_triangle(std::size_t i);
   /// @param except  a piece of this shape, or null

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "pd/bullet/scalar.hpp"
+#include "shapes/each_triangle.hpp"
 #include "shapes/rounded_box.hpp"
 
 namespace pd::detail {
@@ -50,6 +51,13 @@ class BodyReach {
   double reach_;
 };
 
+/// Whether two boxes may have a point in common: also where a corner is no number.
+inline bool boxes_meet(const btVector3& lower_a, const btVector3& upper_a, const btVector3& lower_b,
+                       const btVector3& upper_b) {
+  return !(lower_a.x() > upper_b.x() || upper_a.x() < lower_b.x() || lower_a.y() > upper_b.y() ||
+           upper_a.y() < lower_b.y() || lower_a.z() > upper_b.z() || upper_a.z() < lower_b.z());
+}
+
 /// Keeps its memory from step to step.
 class TrianglesAround {
  public:
@@ -67,8 +75,26 @@ class TrianglesAround {
   [[nodiscard]] std::size_t find(int part, int index, const btVector3* corners) const;
   /// Whether all triangles of this mesh that meet a box are among them.
   [[nodiscard]] bool cover(const btConcaveShape& mesh, const btVector3& lower, const btVector3& upper) const;
+  /// Calls `visit(place)` for those of them whose boxes meet a box.
+  template <class Visit>
+  void for_each_in(const btVector3& lower, const btVector3& upper, const Visit& visit) const {
+    const auto offer = [&](std::size_t i) {
+      if (boxes_meet(triangles_[i].lower, triangles_[i].upper, lower, upper)) visit(i);
+    };
+    if (triangles_.size() <= kFew) {
+      for (std::size_t i = 0; i < triangles_.size(); ++i) offer(i);
+      return;
+    }
+    for_each_triangle(*mesh_, lower, upper, [&](const btVector3* corners, int part, int index) {
+      const std::size_t i = find(part, index, corners);
+      if (i < triangles_.size()) offer(i);
+    });
+  }
 
  private:
+  /// Of so few triangles each is compared; among more, the mesh's tree is asked.
+  static constexpr std::size_t kFew = 256;
+
   const btConcaveShape* mesh_ = nullptr;
   btVector3 lower_;
   btVector3 upper_;
@@ -77,12 +103,5 @@ class TrianglesAround {
   std::vector<MeshTriangle> read_;                            ///< in the order of the mesh's tree
   std::vector<std::pair<std::uint64_t, std::size_t>> order_;  ///< by Bullet's numbers
 };
-
-/// Whether two boxes may have a point in common: also where a corner is no number.
-inline bool boxes_meet(const btVector3& lower_a, const btVector3& upper_a, const btVector3& lower_b,
-                       const btVector3& upper_b) {
-  return !(lower_a.x() > upper_b.x() || upper_a.x() < lower_b.x() || lower_a.y() > upper_b.y() ||
-           upper_a.y() < lower_b.y() || lower_a.z() > upper_b.z() || upper_a.z() < lower_b.z());
-}
 
 }  // namespace pd::detail

@@ -410,8 +410,7 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, Patches& pa
   PairMemory& memory = question.memory;
   const Child& child = children_[static_cast<std::size_t>(place)];
   const BodyReach& reach = reaches_[static_cast<std::size_t>(place)];
-  const btCollisionObjectWrapper& mesh = question.b;
-  const btTransform& pose = mesh.getWorldTransform();
+  const btTransform& pose = question.b.getWorldTransform();
   if (!together_) read_mesh(question, reach.lower(), reach.upper());
   const std::size_t first = triangles_.size();
   choose_triangles(place, buffers.around, memory.standing);
@@ -428,6 +427,7 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, Patches& pa
     sides_.enter(child.index, pose.inverseTimes(child.pose), to_pd(pose), middle, way_, threshold);
   }
   const auto met_of_child = std::span<const MetTriangle>(triangles_).subspan(first);
+  const SheetSides::Around around{met_of_child, std::span(places_).subspan(first), buffers.around};
   ChildOnGround standing({question, a, is_part(a) ? a.m_index : -1, met_of_child, one_sided ? nullptr : &sides_},
                          memory.shape_of_child(0, child.index));
   const bool asked_one_by_one = still_ && !memory.standing.flat(static_cast<std::size_t>(place));
@@ -441,7 +441,7 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, Patches& pa
   for (std::size_t i = first; i < triangles_.size(); ++i) {
     const MetTriangle& met = triangles_[i];
     if (gentle && find_on_gentle(a, question, i, patches)) continue;
-    const TriangleInResult triangle(question.result, mesh, met);
+    const TriangleInResult triangle(question.result, question.b, met);
     PairAnswer answer;
     PieceMemory* remembered = nullptr;
     if (still_) {
@@ -458,7 +458,7 @@ bool MeshContacts::find_of(const UnionQuestion& question, int place, Patches& pa
     const Vec3 front = one_sided ? Vec3((to_pd(pose).rotation() * near.across).normalized()) : Vec3(Vec3::Zero());
     if (one_sided && !one_sided_.admit(answer.depth, front, static_cast<int>(i))) continue;
     if (!one_sided) {
-      const Vec3 back = sides_.judge(met, near.across.normalized(), met_of_child, answer);
+      const Vec3 back = sides_.judge(met, near.across.normalized(), around, answer);
       if (!back.isZero()) {
         one_sided_.add_behind(static_cast<int>(i), back);
         continue;

@@ -19,48 +19,45 @@ constexpr double kPutThere = 3;
 constexpr double kBeside = 4;
 
 /// True if a way leads from one side of a triangle's plane to the other.
-bool crosses_plane(const Vec3& from, const Vec3& to, const Vec3& normal, const MetTriangle& met) {
-  const Vec3 corner = to_pd(met.corners[0]);
+bool crosses_plane(const Vec3& from, const Vec3& to, const Vec3& normal, const btVector3* corners) {
+  const Vec3 corner = to_pd(corners[0]);
   return normal.dot(from - corner) * normal.dot(to - corner) < 0;
 }
 
 /// True if a place lies over or under a triangle, seen along its normal.
-bool is_over(const Vec3& place, const Vec3& normal, const MetTriangle& met) {
+bool is_over(const Vec3& place, const Vec3& normal, const btVector3* corners) {
   for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3 begin = to_pd(met.corners[i]), end = to_pd(met.corners[i < 2 ? i + 1 : 0]);
+    const Vec3 begin = to_pd(corners[i]), end = to_pd(corners[i < 2 ? i + 1 : 0]);
     if ((end - begin).cross(place - begin).dot(normal) < 0) return false;
   }
   return true;
 }
 
 /// True if a way leads from one side of a triangle's plane to the other through the triangle.
-bool leads_through(const Vec3& from, const Vec3& to, const Vec3& normal, const MetTriangle& met) {
-  if (!crosses_plane(from, to, normal, met)) return false;
-  const Vec3 corner = to_pd(met.corners[0]);
+bool leads_through(const Vec3& from, const Vec3& to, const Vec3& normal, const btVector3* corners) {
+  if (!crosses_plane(from, to, normal, corners)) return false;
+  const Vec3 corner = to_pd(corners[0]);
   const double before = normal.dot(from - corner), after = normal.dot(to - corner);
-  return is_over(from + before / (before - after) * (to - from), normal, met);
+  return is_over(from + before / (before - after) * (to - from), normal, corners);
 }
 
-/// True if a triangle of nearly this direction does so. `test` gets its own normal, too.
-template <class Test>
-bool any_alike(const Vec3& normal, std::span<const MetTriangle> around, const Test& test) {
-  return std::any_of(around.begin(), around.end(), [&](const MetTriangle& met) {
-    const Vec3 corner = to_pd(met.corners[0]);
-    const Vec3 own = (to_pd(met.corners[1]) - corner).cross(to_pd(met.corners[2]) - corner).normalized();
-    return std::abs(own.dot(normal)) > kOfOneWay && test(own, met);
-  });
-}
+/// True if two unit normals are those of triangles of nearly one direction.
+bool alike(const Vec3& one, const Vec3& other) { return std::abs(one.dot(other)) > kOfOneWay; }
 
 /// True if a way that crosses a triangle's plane leads through it or through a triangle of nearly its direction. A body
 /// that comes aslant has come through the triangle beside the one that is the nearest now.
-bool leads_through_one(const Vec3& from, const Vec3& to, const Vec3& normal, std::span<const MetTriangle> around) {
-  return any_alike(normal, around,
-                   [&](const Vec3& own, const MetTriangle& met) { return leads_through(from, to, own, met); });
-}
-
-/// True if a place lies over or under a triangle of nearly this direction. A plane goes on beyond its triangles.
-bool is_over_one(const Vec3& place, const Vec3& normal, std::span<const MetTriangle> around) {
-  return any_alike(normal, around, [&](const Vec3& own, const MetTriangle& met) { return is_over(place, own, met); });
+bool leads_through_one(const Vec3& from, const Vec3& to, const Vec3& normal, const SheetSides::Around& around) {
+  const Vec3 rounding = Vec3::Constant(kPoseRounding * (from.norm() + to.norm()));
+  const btVector3 lower = to_bullet(Vec3(from.cwiseMin(to) - rounding));
+  const btVector3 upper = to_bullet(Vec3(from.cwiseMax(to) + rounding));
+  bool found = false;
+  around.read.for_each_in(lower, upper, [&](std::size_t i) {
+    if (found || !std::binary_search(around.places.begin(), around.places.end(), i)) return;
+    const MeshTriangle& triangle = around.read.triangles()[i];
+    const Vec3 own = triangle.across.normalized();
+    found = alike(own, normal) && leads_through(from, to, own, triangle.corners);
+  });
+  return found;
 }
 
 }  // namespace
@@ -91,6 +88,7 @@ void SheetSides::enter(int child, const btTransform& pose, const Pose& mesh, con
     last_pose_ = pose;
     before_ = now;
   }
+  looked_under_ = false;
   fast_ = known_ && (way > reach || memory_->behind > 0);
 }
 
@@ -122,8 +120,20 @@ Vec3 SheetSides::front_of(std::uint64_t triangle, const Vec3& normal) const {
   return cosine > 0 ? normal : Vec3(-normal);
 }
 
-Vec3 SheetSides::judge(const MetTriangle& met, const Vec3& normal, std::span<const MetTriangle> around,
-                       const PairAnswer& answer) {
+bool SheetSides::was_over_one(const Vec3& normal, std::span<const MetTriangle> met) {
+  if (!looked_under_) {
+    looked_under_ = true;
+    under_.clear();
+    for (const MetTriangle& triangle : met) {
+      const Vec3 corner = to_pd(triangle.corners[0]);
+      const Vec3 own = (to_pd(triangle.corners[1]) - corner).cross(to_pd(triangle.corners[2]) - corner).normalized();
+      if (is_over(before_, own, triangle.corners)) under_.push_back(own);
+    }
+  }
+  return std::any_of(under_.begin(), under_.end(), [&](const Vec3& own) { return alike(own, normal); });
+}
+
+Vec3 SheetSides::judge(const MetTriangle& met, const Vec3& normal, const Around& around, const PairAnswer& answer) {
   const std::uint64_t triangle = number_of_pieces(child_, met);
   const Vec3 corner = to_pd(met.corners[0]);
   const bool overlapping = answer.depth.contact == ContactClass::overlapping;
@@ -146,13 +156,13 @@ Vec3 SheetSides::judge(const MetTriangle& met, const Vec3& normal, std::span<con
     const Vec3 met_at = in_mesh(answer.depth.witness_b);
     const Vec3 place = met_at - normal.dot(met_at - corner) * normal;
     const bool comes_through = side.dot(now - came) > 0;
-    const bool crossed = !overlapping && crosses_plane(came, now, normal, met);
+    const bool crossed = !overlapping && crosses_plane(came, now, normal, met.corners);
     if (overlapping || crossed) {
       front = beside(std::span(fresh_).subspan(first_of_child_), normal, place);
       if (front.isZero() && (comes_through || memory_->behind > 0)) front = beside(memory_->fronts, normal, place);
     }
     if (front.isZero() && overlapping && comes_through && side.dot(before_ - corner) < 0 &&
-        is_over_one(before_, normal, around)) {
+        was_over_one(normal, around.met)) {
       front = -side;
     }
     if (crossed) {

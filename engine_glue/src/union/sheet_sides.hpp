@@ -21,6 +21,7 @@
 #include "pair/sheet_memory.hpp"
 #include "pair/solver_core.hpp"
 #include "shapes/met_triangle.hpp"
+#include "shapes/triangles_around.hpp"
 
 namespace pd::detail {
 
@@ -47,10 +48,15 @@ class SheetSides {
   /// Where the child's middle was in the last step, as far as it is known, else where it is. In the mesh's frame.
   [[nodiscard]] const Vec3& middle_before() const { return before_; }
 
+  /// The triangles that the child is asked about: they have these places among all that were read, in their order.
+  struct Around {
+    std::span<const MetTriangle> met;
+    std::span<const std::size_t> places;
+    const TrianglesAround& read;
+  };
   /// @param normal  of the triangle, unit and in the mesh's frame
-  /// @param around  all triangles that the child is asked about
   /// @return the triangle's front, unit and in the world, where the answer leads to its back; else zero
-  Vec3 judge(const MetTriangle& met, const Vec3& normal, std::span<const MetTriangle> around, const PairAnswer& answer);
+  Vec3 judge(const MetTriangle& met, const Vec3& normal, const Around& around, const PairAnswer& answer);
   /// The child is in front of a triangle.
   void keep(std::uint64_t triangle, const Vec3& front, const Vec3& corner) {
     fresh_.push_back({triangle, front, front.dot(corner)});
@@ -73,6 +79,10 @@ class SheetSides {
   /// Where a material point of the child was in the last step, in the mesh's frame.
   [[nodiscard]] Vec3 before(const Vec3& place) const;
 
+  /// True if the child's middle was over or under a triangle of nearly this direction. A plane goes on beyond its
+  /// triangles.
+  bool was_over_one(const Vec3& normal, std::span<const MetTriangle> met);
+
   const SheetMemory* memory_ = nullptr;
   std::vector<KnownFront> fresh_;
   std::vector<SheetMemory::LastPose> poses_;
@@ -86,6 +96,8 @@ class SheetSides {
   Pose mesh_;
   btTransform pose_, last_pose_;
   Vec3 before_ = Vec3::Zero();
+  bool looked_under_ = false;
+  std::vector<Vec3> under_;  ///< normals of the triangles that the child's middle was over or under
 };
 
 }  // namespace pd::detail
