@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "engine_glue/union_worlds.hpp"
@@ -56,6 +57,50 @@ TEST(UnevenGround, BoxesComeToRest) {
     EXPECT_LT(speeds[44], 1e-3) << cell;  // three quarters
     EXPECT_LT(speeds[53], 3e-3) << cell;  // nine tenths
     EXPECT_LT(speeds[59], 0.02) << cell;
+  }
+}
+
+/// A heightfield of bumps that are as high as they are wide, its quads split in both ways.
+btHeightfieldTerrainShape* bumps(UnionWorld& world) {
+  constexpr int kCorners = 25;
+  world.heights.push_back(std::make_unique<std::vector<btScalar>>());
+  for (int i = 0; i < kCorners * kCorners; ++i) {
+    world.heights.back()->push_back(btScalar((i % kCorners * 7 + i / kCorners * 13) % 5) / 16);
+  }
+  auto* heights = world.bullet.shape<btHeightfieldTerrainShape>(kCorners, kCorners, world.heights.back()->data(),
+                                                                btScalar(0), btScalar(0.25), 1, false);
+  heights->setLocalScaling(vector(0.25, 1, 0.25));
+  heights->setUseDiamondSubdivision(true);
+  heights->setUseZigzagSubdivision(true);
+  return heights;
+}
+
+// It sinks into a ridge by a little and is pushed out: it did not come from below.
+TEST(UnevenGround, WhatIsPushedOutOfARidgeStaysAboveIt) {
+  struct Start {
+    bool cone;
+    btQuaternion turn;
+    double x, z;
+  };
+  const auto turned = [](double x, double y, double z, double w) {
+    return btQuaternion(btScalar(x), btScalar(y), btScalar(z), btScalar(w));
+  };
+  const Start starts[] = {
+      {true, turned(-0.0362502374, -0.0821750313, -0.0380589217, 0.995230973), -0.193411708, 1.16608667},
+      {false, turned(-0.247982129, -0.475053519, 0.0517915003, 0.842702031), 1.90261173, -0.383168668},
+      {false, turned(0.847792625, 0.451524466, -0.157241255, -0.229452491), -0.979365826, -0.115375891}};
+  for (const Start& start : starts) {
+    UnionWorld world;
+    world.fixed(bumps(world))->setFriction(btScalar(0.5));
+    btCollisionShape* shape = world.bullet.shape<btConeShape>(btScalar(0.2), btScalar(0.4));
+    if (!start.cone) shape = world.bullet.shape<btCylinderShapeX>(vector(0.2, 0.2, 0.2));
+    btRigidBody* body = world.moving(shape, btTransform(start.turn, vector(start.x, 0.8, start.z)), vector(0, 0, 0));
+    body->setFriction(btScalar(0.5));
+    for (int i = 0; i < 150; ++i) {
+      world.step();
+      ASSERT_GT(world.bullet.least_distance(), -0.2) << "step " << i << " of the start at " << start.x;
+    }
+    EXPECT_GT(static_cast<double>(body->getWorldTransform().getOrigin().y()), 0) << start.x;
   }
 }
 

@@ -166,8 +166,9 @@ Vec3 SheetSides::judge(const MetTriangle& met, const Vec3& normal, const Around&
       front = -side;
     }
     if (crossed) {
-      // A body that crossed the plane where no triangle is known came through a triangle or around a rim.
-      came_through = leads_through_one(came, now, normal, around);
+      // A body that crossed the plane where no triangle is known came through a triangle or around a rim. One whose
+      // middle was ahead of the plane already did not come: it was in the triangle by a little, and was pushed out.
+      came_through = side.dot(before_ - corner) < 0 && leads_through_one(came, now, normal, around);
       sure = came_through || !front.isZero();
       if (came_through && front.isZero()) front = -side;
     }
