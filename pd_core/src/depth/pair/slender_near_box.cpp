@@ -1,82 +1,16 @@
 #include "depth/pair/slender_near_box.hpp"
 
-#include <algorithm>
-#include <cmath>
+#include <optional>
 
 #include "depth/facets/gauss_boxes.hpp"
 #include "depth/features/nearest_of_segments.hpp"
+#include "depth/features/segment_beside_box.hpp"
 #include "depth/pair/contact_facets.hpp"
 #include "depth/pair/slender_pair.hpp"
 
 namespace pd::detail {
 
 namespace {
-
-/// Which side of the box each coordinate lies beyond, 0 within.
-struct Sides {
-  int of[3];
-  bool operator==(const Sides&) const = default;
-  [[nodiscard]] int outside() const { return std::abs(of[0]) + std::abs(of[1]) + std::abs(of[2]); }
-};
-
-/// A segment in a box's own coordinates.
-class SegmentBesideBox {
- public:
-  SegmentBesideBox(const Vec3& start, const Vec3& along, const Vec3& halves)
-      : start_(start), along_(along), halves_(halves) {}
-
-  [[nodiscard]] Vec3 at(double t) const { return start_ + t * along_; }
-  [[nodiscard]] const Vec3& halves() const { return halves_; }
-  /// Sides of the point nearest to the box.
-  [[nodiscard]] Sides nearest() const {
-    Sides sides = sides_at(0);
-    if (slope(0, sides) >= 0) return sides;
-    sides = sides_at(1);
-    if (slope(1, sides) <= 0) return sides;
-    // The slope grows with t along a polygon of at most seven pieces: Newton's step is right once on the right one.
-    double low = 0, high = 1, t = 0.5;
-    for (int step = 0; step < kMostSteps; ++step) {
-      sides = sides_at(t);
-      const double here = slope(t, sides);
-      (here < 0 ? low : high) = t;
-      double growth = 0;
-      for (int k = 0; k < 3; ++k) growth += sides.of[k] == 0 ? 0 : along_[k] * along_[k];
-      const double next = t - here / growth;
-      if (!(next > low && next < high)) {
-        if (!(growth > 0) || next == t) return sides;
-        t = 0.5 * (low + high);
-        continue;
-      }
-      t = next;
-      if (sides_at(t) == sides) return sides;
-    }
-    return sides;
-  }
-
- private:
-  static constexpr int kMostSteps = 24;
-
-  [[nodiscard]] Sides sides_at(double t) const {
-    Sides sides{};
-    for (int k = 0; k < 3; ++k) {
-      const double x = start_[k] + t * along_[k];
-      sides.of[k] = (x > halves_[k] ? 1 : 0) - (x < -halves_[k] ? 1 : 0);
-    }
-    return sides;
-  }
-  /// Half of the squared distance's derivative.
-  [[nodiscard]] double slope(double t, const Sides& sides) const {
-    double sum = 0;
-    for (int k = 0; k < 3; ++k) {
-      if (sides.of[k] != 0) sum += (start_[k] + t * along_[k] - sides.of[k] * halves_[k]) * along_[k];
-    }
-    return sum;
-  }
-
-  Vec3 start_;
-  Vec3 along_;
-  Vec3 halves_;
-};
 
 /// A segment and a box at their poses, relative to the segment's translation but for the box.
 struct SegmentAndBox {
@@ -148,7 +82,7 @@ bool answer_slender_near_box(const PolytopePair& pair, const DepthSettings& sett
                          body.radius() + owner.radius() + offset.norm()};
   const SegmentBesideBox beside(turn.transpose() * (of.segment.start - (offset + of.box.centre)),
                                 turn.transpose() * of.segment.along, frame->half_extents);
-  const Sides sides = beside.nearest();
+  const SidesOfBox sides = beside.nearest();
   if (sides.outside() == 0) return false;
   if (sides.outside() == 1) {
     const int k = sides.of[0] != 0 ? 0 : sides.of[1] != 0 ? 1 : 2;

@@ -2,11 +2,9 @@
 /// A point or a segment (the cores of spheres and capsules) apart from a box, in closed form: over a face or an edge,
 /// beside a corner, wherever along the segment.
 ///
-/// In the box's own coordinates the squared distance of a point of the segment is a convex function of its place t,
-/// made of parabolas. Where it is least, the coordinates that lie outside the box's extent name the face, the edge or
-/// the corner that is nearest. The rest is the height of an end over a face, or the distance of two segments
-/// (nearest_of_segments.hpp), bounded from below over the whole box: a wrong name gives a wide bracket and is passed
-/// on.
+/// Where the segment is nearest names the face, the edge or the corner (segment_beside_box.hpp). The rest is the height
+/// of an end over a face, or the distance of two segments (nearest_of_segments.hpp), bounded from below over the whole
+/// box: a wrong name gives a wide bracket and is passed on.
 #pragma once
 
 #include "depth/pair/polytope_depth.hpp"
