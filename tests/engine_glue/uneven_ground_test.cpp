@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -102,6 +103,68 @@ TEST(UnevenGround, WhatIsPushedOutOfARidgeStaysAboveIt) {
     }
     EXPECT_GT(static_cast<double>(body->getWorldTransform().getOrigin().y()), 0) << start.x;
   }
+}
+
+/// Numbers in [0, 1) that are the same with every library.
+class Numbers {
+ public:
+  explicit Numbers(std::uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15ULL + 1) {}
+  double next() {
+    state_ = state_ * 6364136223846793005ULL + 1442695040888963407ULL;
+    return static_cast<double>(state_ >> 11U) * 0x1p-53;
+  }
+  double between(double low, double high) { return low + (high - low) * next(); }
+
+ private:
+  std::uint64_t state_;
+};
+
+/// A body tumbles over steep bumps. Returns the largest rise of the deepest contact in a step beyond what it came.
+double most_sudden_depth(std::uint64_t seed) {
+  constexpr int kCorners = 17;
+  Numbers numbers(seed);
+  UnionWorld world;
+  const double cell = numbers.between(0.15, 0.5), high = cell * numbers.between(0.8, 1.6);
+  world.heights.push_back(std::make_unique<std::vector<btScalar>>());
+  for (int i = 0; i < kCorners * kCorners; ++i) {
+    world.heights.back()->push_back(static_cast<btScalar>(numbers.between(0, high)));
+  }
+  auto* ground = world.bullet.shape<btHeightfieldTerrainShape>(kCorners, kCorners, world.heights.back()->data(),
+                                                               btScalar(0), btScalar(high), 1, false);
+  ground->setLocalScaling(vector(cell, 1, cell));
+  world.fixed(ground)->setFriction(btScalar(0.5));
+  const double size = numbers.between(0.08, 0.3);
+  btCollisionShape* shape = world.bullet.shape<btBoxShape>(vector(size, size, size));
+  if (seed % 2 == 0) {
+    auto* hull = world.bullet.shape<btConvexHullShape>();
+    const btVector3 corners[] = {vector(-1, -1, -1), vector(1, -1, -1), vector(0, -1, 1), vector(0, 1, 0)};
+    for (const btVector3& corner : corners) hull->addPoint(btScalar(size) * corner);
+    shape = hull;
+  }
+  const btVector3 at = vector(numbers.between(-5, 5) * cell, high + 2.5 * size, numbers.between(-5, 5) * cell);
+  const btVector3 axis = vector(numbers.between(-1, 1), numbers.between(-1, 1), numbers.between(-1, 1)).normalized();
+  btRigidBody* body = world.moving(shape, btTransform(btQuaternion(axis, btScalar(numbers.between(0, 6))), at),
+                                   vector(numbers.between(-2, 2), numbers.between(-2, 0), numbers.between(-2, 2)));
+  body->setFriction(btScalar(0.5));
+  double last = 0, most = 0;
+  for (int i = 0; i < 90; ++i) {
+    const double way = static_cast<double>(body->getLinearVelocity().length()) +
+                       2 * size * static_cast<double>(body->getAngularVelocity().length());
+    world.step();
+    const double depth = std::max(-world.bullet.least_distance(), 0.0);
+    most = std::max(most, (depth - last - way / 30) / size);
+    last = depth;
+  }
+  return most;
+}
+
+// A ridge's far slope has a plane that many bodies' middles are behind.
+TEST(UnevenGround, NoContactOfBodiesThatTumbleIsSuddenlyDeep) {
+  int sudden = 0;
+  for (std::uint64_t seed = 0; seed < 250; ++seed) {
+    if (most_sudden_depth(seed) > 0.2) ++sudden;
+  }
+  EXPECT_LE(sudden, 1);
 }
 
 }  // namespace

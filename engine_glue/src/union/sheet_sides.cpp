@@ -41,9 +41,6 @@ bool leads_through(const Vec3& from, const Vec3& to, const Vec3& normal, const b
   return is_over(from + before / (before - after) * (to - from), normal, corners);
 }
 
-/// True if two unit normals are those of triangles of nearly one direction.
-bool alike(const Vec3& one, const Vec3& other) { return std::abs(one.dot(other)) > kOfOneWay; }
-
 /// True if a way that crosses a triangle's plane leads through it or through a triangle of nearly its direction. A body
 /// that comes aslant has come through the triangle beside the one that is the nearest now.
 bool leads_through_one(const Vec3& from, const Vec3& to, const Vec3& normal, const SheetSides::Around& around) {
@@ -55,7 +52,7 @@ bool leads_through_one(const Vec3& from, const Vec3& to, const Vec3& normal, con
     if (found || !std::binary_search(around.places.begin(), around.places.end(), i)) return;
     const MeshTriangle& triangle = around.read.triangles()[i];
     const Vec3 own = triangle.across.normalized();
-    found = alike(own, normal) && leads_through(from, to, own, triangle.corners);
+    found = std::abs(own.dot(normal)) > kOfOneWay && leads_through(from, to, own, triangle.corners);
   });
   return found;
 }
@@ -88,7 +85,7 @@ void SheetSides::enter(int child, const btTransform& pose, const Pose& mesh, con
     last_pose_ = pose;
     before_ = now;
   }
-  looked_under_ = false;
+  looked_around_ = false;
   fast_ = known_ && (way > reach || memory_->behind > 0);
 }
 
@@ -120,17 +117,19 @@ Vec3 SheetSides::front_of(std::uint64_t triangle, const Vec3& normal) const {
   return cosine > 0 ? normal : Vec3(-normal);
 }
 
-bool SheetSides::was_over_one(const Vec3& normal, std::span<const MetTriangle> met) {
-  if (!looked_under_) {
-    looked_under_ = true;
-    under_.clear();
+bool SheetSides::was_behind_one(const Vec3& side, std::span<const MetTriangle> met) {
+  if (!looked_around_) {
+    looked_around_ = true;
+    towards_middle_.clear();
     for (const MetTriangle& triangle : met) {
       const Vec3 corner = to_pd(triangle.corners[0]);
       const Vec3 own = (to_pd(triangle.corners[1]) - corner).cross(to_pd(triangle.corners[2]) - corner).normalized();
-      if (is_over(before_, own, triangle.corners)) under_.push_back(own);
+      if (!is_over(before_, own, triangle.corners)) continue;
+      towards_middle_.push_back(own.dot(before_ - corner) < 0 ? Vec3(-own) : own);
     }
   }
-  return std::any_of(under_.begin(), under_.end(), [&](const Vec3& own) { return alike(own, normal); });
+  return std::any_of(towards_middle_.begin(), towards_middle_.end(),
+                     [&](const Vec3& front) { return front.dot(side) < -kOfOneWay; });
 }
 
 Vec3 SheetSides::judge(const MetTriangle& met, const Vec3& normal, const Around& around, const PairAnswer& answer) {
@@ -162,7 +161,7 @@ Vec3 SheetSides::judge(const MetTriangle& met, const Vec3& normal, const Around&
       if (front.isZero() && (comes_through || memory_->behind > 0)) front = beside(memory_->fronts, normal, place);
     }
     if (front.isZero() && overlapping && comes_through && side.dot(before_ - corner) < 0 &&
-        was_over_one(normal, around.met)) {
+        was_behind_one(side, around.met)) {
       front = -side;
     }
     if (crossed) {

@@ -79,9 +79,9 @@ class SheetSides {
   /// Where a material point of the child was in the last step, in the mesh's frame.
   [[nodiscard]] Vec3 before(const Vec3& place) const;
 
-  /// True if the child's middle was over or under a triangle of nearly this direction. A plane goes on beyond its
-  /// triangles.
-  bool was_over_one(const Vec3& normal, std::span<const MetTriangle> met);
+  /// True if the child's middle was on the other side of a triangle that it was over or under and that has nearly this
+  /// side. A plane goes on beyond its triangles.
+  bool was_behind_one(const Vec3& side, std::span<const MetTriangle> met);
 
   const SheetMemory* memory_ = nullptr;
   std::vector<KnownFront> fresh_;
@@ -96,8 +96,8 @@ class SheetSides {
   Pose mesh_;
   btTransform pose_, last_pose_;
   Vec3 before_ = Vec3::Zero();
-  bool looked_under_ = false;
-  std::vector<Vec3> under_;  ///< normals of the triangles that the child's middle was over or under
+  bool looked_around_ = false;
+  std::vector<Vec3> towards_middle_;  ///< sides of the triangles that the child's middle was over or under
 };
 
 }  // namespace pd::detail
