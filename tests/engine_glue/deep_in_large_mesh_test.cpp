@@ -100,12 +100,14 @@ class DeepInLargeMesh : public testing::Test {
   void expect_few_reads(Ground* ground, btCollisionShape* body, int times) {
     world_.fixed(ground);
     world_.moving(body, btVector3(0, btScalar(0.6), 0), btVector3(0, 0, 0));
+    int first_contacts = 0;
     for (int step = 0; step < 3; ++step) {
       ground->count = 0;
       world_.step();
       EXPECT_LE(ground->count, std::int64_t{times} * 2 * kSide * kSide) << "step " << step;
-      if (step == 0) EXPECT_GT(world_.bullet.num_contacts(), 0);
+      if (step == 0) first_contacts = world_.bullet.num_contacts();
     }
+    EXPECT_GT(first_contacts, 0);
   }
 
   UnionWorld world_;
