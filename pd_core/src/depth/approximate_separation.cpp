@@ -8,6 +8,7 @@
 #include "depth/certificate/exact_answer.hpp"
 #include "depth/pair/core_class.hpp"
 #include "depth/pair/scratch_buffers.hpp"
+#include "depth/rays/hierarchy_descent.hpp"
 #include "depth/rays/ray_shooting.hpp"
 #include "numeric/floating_point_guard.hpp"
 #include "pd/depth/scratch.hpp"
@@ -86,6 +87,9 @@ Expected<ApproximateSeparation> approximate_separation(const PosedShape& a, cons
   std::array<std::optional<PolyhedralHierarchy>, 2> built;
   if (settings.shot == DirectionalMethod::hierarchy) {
     if (settings.hierarchies != nullptr) {
+      const auto& [given_a, given_b] = *settings.hierarchies;
+      if (const auto error = detail::refuse_hierarchy(given_a, *polytope_a, "hierarchies.a")) return *error;
+      if (const auto error = detail::refuse_hierarchy(given_b, *polytope_b, "hierarchies.b")) return *error;
       hierarchies = {settings.hierarchies->a, settings.hierarchies->b};
     } else {
       for (const std::size_t side : {0U, 1U}) {

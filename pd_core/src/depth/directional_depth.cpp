@@ -227,7 +227,11 @@ bool descend(const PosedPair& pair, const Vec3& direction, const DirectionalHier
 /// an answer.
 Expected<bool> by_hierarchies(const PosedPair& pair, const ConvexPolytope& a, const ConvexPolytope& b,
                               const Vec3& direction, const DirectionalHierarchies* hierarchies, DirectionalDepth& out) {
-  if (hierarchies != nullptr) return descend(pair, direction, *hierarchies, out);
+  if (hierarchies != nullptr) {
+    if (const auto error = detail::refuse_hierarchy(hierarchies->a, a, "hierarchies.a")) return *error;
+    if (const auto error = detail::refuse_hierarchy(hierarchies->b, b, "hierarchies.b")) return *error;
+    return descend(pair, direction, *hierarchies, out);
+  }
   Expected<PolyhedralHierarchy> built_a = PolyhedralHierarchy::build(a, HierarchyKind::inner);
   if (!built_a) return built_a.error();
   Expected<PolyhedralHierarchy> built_b = PolyhedralHierarchy::build(b, HierarchyKind::inner);

@@ -5,7 +5,9 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "pd/depth/approximate_separation.hpp"
 #include "pd/depth/difference_queries.hpp"
 #include "pd/depth/directional_depth.hpp"
 #include "pd/depth/level_queries.hpp"
@@ -163,6 +165,53 @@ TEST(HierarchyDescent, RefusesByName) {
   EXPECT_TRUE(through.meets);
   EXPECT_EQ(through.enter_lower, -1);
   EXPECT_EQ(through.leave_upper, 1);
+}
+
+// What a caller hands over is looked at: null pointers, hierarchies of other bodies, and outer ones have no ray.
+TEST(HierarchyDescent, HierarchiesThatAreNotTheBodiesAreRefused) {
+  const ConvexPolytope box = *ConvexPolytope::box(Vec3(1, 1, 1));
+  const ConvexPolytope large = *ConvexPolytope::box(Vec3(2, 1, 1));
+  const ConvexShape a(box), b(large);
+  const PosedShape posed_a{&a, Pose()}, posed_b{&b, Pose()};
+  const auto inner_a = *PolyhedralHierarchy::build(box, HierarchyKind::inner);
+  const auto inner_b = *PolyhedralHierarchy::build(large, HierarchyKind::inner);
+  const auto outer_b = *PolyhedralHierarchy::build(large, HierarchyKind::outer);
+  // An equal body with storage of its own is the same body.
+  const auto equal_a = *PolyhedralHierarchy::build(*ConvexPolytope::box(Vec3(1, 1, 1)), HierarchyKind::inner);
+  Scratch scratch;
+  const auto ask = [&](const PolyhedralHierarchy* of_a, const PolyhedralHierarchy* of_b) {
+    const DirectionalHierarchies both{of_a, of_b};
+    auto ray = directional_depth(posed_a, posed_b, Vec3::UnitX(), scratch, DirectionalMethod::hierarchy, &both);
+    ApproximateSeparationSettings settings;
+    settings.shot = DirectionalMethod::hierarchy;
+    settings.hierarchies = &both;
+    const auto rays = approximate_separation(posed_a, posed_b, 0.5, scratch, settings);
+    EXPECT_EQ(ray.has_value(), rays.has_value());
+    if (!ray && !rays) {
+      EXPECT_EQ(ray.error().where, rays.error().where);
+    }
+    return ray;
+  };
+  const auto refused = [&](const auto* of_a, const auto* of_b, ErrorCode code, const char* where) {
+    const auto found = ask(of_a, of_b);
+    ASSERT_FALSE(found.has_value()) << where;
+    EXPECT_EQ(found.error().code, code);
+    EXPECT_EQ(found.error().where, where);
+  };
+  refused(static_cast<const PolyhedralHierarchy*>(nullptr), &inner_b, ErrorCode::bad_value, "hierarchies.a");
+  refused(&inner_a, static_cast<const PolyhedralHierarchy*>(nullptr), ErrorCode::bad_value, "hierarchies.b");
+  refused(&inner_b, &inner_a, ErrorCode::bad_value, "hierarchies.a");
+  refused(&inner_a, &outer_b, ErrorCode::unsupported, "hierarchies.b");
+  EXPECT_EQ(ask(&inner_a, &inner_b)->depth, 3);
+  EXPECT_EQ(ask(&equal_a, &inner_b)->depth, 3);
+  // A hierarchy that was moved from holds its levels on.
+  PolyhedralHierarchy source = inner_a;
+  const PolyhedralHierarchy target = std::move(source);
+  EXPECT_EQ(ask(&source, &inner_b)->depth, 3);
+  EXPECT_EQ(ask(&target, &inner_b)->depth, 3);
+  TwinHierarchy twin = *TwinHierarchy::build(box);
+  const TwinHierarchy other = std::move(twin);
+  EXPECT_EQ(twin.num_levels(), other.num_levels());
 }
 
 }  // namespace

@@ -56,7 +56,8 @@ struct ApproximateSeparation {
 /// @param delta  in (0, 1].
 /// @return ErrorCode::bad_value ("delta"). limit_exceeded ("delta") where the grid needs more than `max_rays`, which is
 /// known before the first of them. `unsupported` for smooth bodies (""), and for another shot than portal or
-/// hierarchy ("shot"). `not_full_dimensional` for hierarchies of flat bodies.
+/// hierarchy ("shot"). `not_full_dimensional` for hierarchies of flat bodies. Errors of the given hierarchies are those
+/// of `directional_depth`.
 /// Time O(m + n + S / delta), S a shot: about 2.7 / delta of them (geodesic) or 6.2 / delta.
 [[nodiscard]] Expected<ApproximateSeparation> approximate_separation(
     const PosedShape& a, const PosedShape& b, double delta, Scratch& scratch,

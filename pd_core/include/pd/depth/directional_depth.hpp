@@ -74,7 +74,8 @@ struct DirectionalDepth {
 /// for this ray, in linear time).
 /// @param certificate  where a portal starts and what it leaves, or nullptr; for DirectionalMethod::portal and solids.
 /// @return ErrorCode::zero_direction or non_finite ("direction"); unsupported for another method than portal when a
-/// shape is smooth or has a margin; not_full_dimensional for hierarchies of flat bodies.
+/// shape is smooth or has a margin; not_full_dimensional for hierarchies of flat bodies. Of `hierarchies`, bad_value
+/// for a null pointer or the hierarchy of another body, unsupported for an outer one ("hierarchies.a" or ".b").
 ///
 /// By portal the class of solids comes out of the same search, wherever the line crosses P away from its edges.
 /// By hierarchy the class comes out of two descents, along the ray and against it, where the bodies overlap; the exact

@@ -26,9 +26,13 @@ namespace pd {
 
 enum class HierarchyKind : std::uint8_t { inner, outer };
 
-/// Immutable, cheap to copy.
+/// Immutable, cheap to copy. Moving copies, so that every hierarchy holds its levels.
 class PolyhedralHierarchy {
  public:
+  PolyhedralHierarchy(const PolyhedralHierarchy&) = default;
+  PolyhedralHierarchy& operator=(const PolyhedralHierarchy&) = default;
+  ~PolyhedralHierarchy() = default;
+
   /// Elements of a higher degree stay.
   static constexpr int kMaxDegree = 8;
 

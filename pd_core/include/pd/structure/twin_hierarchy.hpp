@@ -18,9 +18,13 @@
 
 namespace pd {
 
-/// Immutable, cheap to copy.
+/// Immutable, cheap to copy. Moving copies, so that every hierarchy holds its levels.
 class TwinHierarchy {
  public:
+  TwinHierarchy(const TwinHierarchy&) = default;
+  TwinHierarchy& operator=(const TwinHierarchy&) = default;
+  ~TwinHierarchy() = default;
+
   /// @return ErrorCode::not_full_dimensional for flat bodies.
   /// Decisions by exact signs. Space O(n), time that of the hulls of all levels, whose sizes sum to O(n).
   static Expected<TwinHierarchy> build(const ConvexPolytope& polytope);

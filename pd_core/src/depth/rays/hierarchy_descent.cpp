@@ -277,6 +277,20 @@ class Descent {
 
 }  // namespace
 
+std::optional<Error> refuse_hierarchy(const PolyhedralHierarchy* hierarchy, const ConvexPolytope& body,
+                                      const char* where) {
+  if (hierarchy == nullptr) return Error{ErrorCode::bad_value, "a hierarchy is needed for each of the bodies", where};
+  if (hierarchy->kind() != HierarchyKind::inner) {
+    return Error{ErrorCode::unsupported, "rays descend inner hierarchies; this one is an outer one", where};
+  }
+  const ConvexPolytope& own = hierarchy->polytope();
+  if (own.same_storage(body)) return std::nullopt;
+  bool equal = own.num_vertices() == body.num_vertices();
+  for (int v = 0; equal && v < body.num_vertices(); ++v) equal = own.vertex(v) == body.vertex(v);
+  if (equal) return std::nullopt;
+  return Error{ErrorCode::bad_value, "this is the hierarchy of another body", where};
+}
+
 HierarchyDescentResult descend_hierarchies(const DirectionSigns& ray, const DescentSide& a, const DescentSide& b) {
   return Descent(ray, a, b).run();
 }

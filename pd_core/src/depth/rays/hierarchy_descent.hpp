@@ -26,6 +26,7 @@
 #include <optional>
 
 #include "depth/difference/direction_signs.hpp"
+#include "pd/numeric/expected.hpp"
 #include "pd/structure/polyhedral_hierarchy.hpp"
 
 namespace pd::detail {
@@ -53,5 +54,11 @@ struct DescentSide {
 /// levels there is no such check, and the plane supports up to rounding.
 [[nodiscard]] HierarchyDescentResult descend_hierarchies(const DirectionSigns& ray, const DescentSide& a,
                                                          const DescentSide& b);
+
+/// Returns why a caller's hierarchy does not serve a body, empty if it does. Time: O(n) if the body is equal to the
+/// hierarchy's own polytope but does not share its storage.
+/// @param where  names the hierarchy for the error.
+[[nodiscard]] std::optional<Error> refuse_hierarchy(const PolyhedralHierarchy* hierarchy, const ConvexPolytope& body,
+                                                    const char* where);
 
 }  // namespace pd::detail
