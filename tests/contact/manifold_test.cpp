@@ -333,4 +333,27 @@ TEST(Manifold, BoxThatTouchesASlopeHasItsFourCorners) {
   }
 }
 
+TEST(Manifold, FeaturesThatTheBodiesDoNotHaveCountAsNone) {
+  const ConvexShape small = box(0.5, 0.5, 0.5), large = box(3, 1, 3);
+  const pd::PosedShape a{&small, pose(Vec3(0.2, 1.4, -0.3))}, b{&large, Pose()};
+  pd::Scratch scratch;
+  pd::ManifoldScratch buffers;
+  const pd::PenetrationDepth answer = pd::penetration_depth(a, b, scratch);
+  const ContactManifold known = pd::contact_manifold(a, b, answer, 0.02, buffers);
+  ASSERT_EQ(known.count, 4);
+  for (int kind = 0; kind < 6; ++kind) {
+    for (const std::int32_t first : {INT32_MIN, -7, 0, 5, 8, 1 << 20, INT32_MAX}) {
+      for (const std::int32_t second : {-1, 0, 9, INT32_MAX}) {
+        pd::PenetrationDepth garbled = answer;
+        garbled.feature_a = garbled.feature_b = {static_cast<pd::Feature::Kind>(kind), first, second};
+        const ContactManifold found = pd::contact_manifold(a, b, garbled, 0.02, buffers);
+        EXPECT_EQ(found.normal, known.normal);
+        if (first >= 0 && first < 8) continue;  // a feature that the bodies have, far from the contact
+        ASSERT_EQ(found.count, 4) << kind << " " << first << " " << second;
+        for (int i = 0; i < 4; ++i) EXPECT_NEAR(found.points[static_cast<std::size_t>(i)].depth, 0.1, 1e-12);
+      }
+    }
+  }
+}
+
 }  // namespace

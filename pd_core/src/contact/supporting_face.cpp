@@ -67,6 +67,22 @@ int flattest_edge(const ConvexPolytope& polytope, int vertex, const Vec3& direct
   return best;
 }
 
+/// Tells whether the feature's numbers are those of a face of this polytope.
+bool has_feature(const ConvexPolytope& polytope, const Feature& feature) {
+  const auto counts = [](std::int32_t number, int count) { return number >= 0 && number < count; };
+  switch (feature.kind) {
+    case Feature::Kind::facet:
+      return counts(feature.first, polytope.num_facets());
+    case Feature::Kind::edge:
+      return counts(feature.first, polytope.num_vertices()) && counts(feature.second, polytope.num_vertices());
+    case Feature::Kind::vertex:
+      return counts(feature.first, polytope.num_vertices());
+    case Feature::Kind::none:
+      break;
+  }
+  return false;
+}
+
 void polytope_face(const ConvexPolytope& polytope, const Pose& pose, const Vec3& local_direction,
                    const Feature& feature, SupportingFace& face) {
   const auto push = [&](int v) { face.vertices.push_back({pose.apply(polytope.vertex(v)), v}); };
@@ -74,9 +90,11 @@ void polytope_face(const ConvexPolytope& polytope, const Pose& pose, const Vec3&
   int vertex = -1;
   int edge_end = -1;
   // An answer for contacts leaves open what is nearer than its tolerance: its facet may be one beside the normal.
-  const bool beside = feature.kind == Feature::Kind::facet &&
-                      !(polytope.facet_normal(feature.first).dot(local_direction) >= kFaceCosine);
-  switch (beside ? Feature::Kind::none : feature.kind) {
+  const bool beside =
+      !has_feature(polytope, feature) || (feature.kind == Feature::Kind::facet &&
+                                          !(polytope.facet_normal(feature.first).dot(local_direction) >= kFaceCosine));
+  const Feature::Kind kind = beside ? Feature::Kind::none : feature.kind;
+  switch (kind) {
     case Feature::Kind::facet:
       choice.facet = feature.first;
       choice.cosine = 1;
@@ -89,7 +107,7 @@ void polytope_face(const ConvexPolytope& polytope, const Pose& pose, const Vec3&
       break;
     case Feature::Kind::vertex:
     case Feature::Kind::none:
-      vertex = feature.kind == Feature::Kind::vertex ? feature.first : support_vertex(polytope, local_direction);
+      vertex = kind == Feature::Kind::vertex ? feature.first : support_vertex(polytope, local_direction);
       offer_facets_at(polytope, vertex, local_direction, choice);
       break;
   }

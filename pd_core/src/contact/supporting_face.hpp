@@ -25,7 +25,7 @@ struct SupportingFace {
 };
 
 /// The face of the core of `shape` to which `direction` (unit, common frame) is most nearly normal, among those at the
-/// answer's feature; where `feature` is none, among those at the support point.
+/// answer's feature. If `feature` is none, or no feature of this body, among those at the support point.
 /// A face more than 60 degrees off is no contact face: then the feature's edge, an edge at most 17 degrees off the
 /// plane across the direction, or the vertex alone.
 void supporting_face(const PosedShape& shape, const Vec3& direction, const Feature& feature, SupportingFace& face);

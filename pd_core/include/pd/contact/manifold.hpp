@@ -69,7 +69,8 @@ enum class DeepestPoint : std::uint8_t {
 
 /// The contact points of a pair whose answer is known.
 ///
-/// @param answer  of `penetration_depth(a, b)` for these two posed shapes.
+/// @param answer  of `penetration_depth(a, b)` for these two posed shapes. Features that the bodies do not have count
+/// as none, and the faces at the support points take their place.
 /// @param breaking_threshold  >= 0: pairs of points with a wider gap are left out; no points when the bodies are
 /// further apart than that. In the unit of the input. Four points of a larger intersection are kept: the deepest, the
 /// farthest from it, and those that span the largest area. Time O(k m) in the vertices of the two faces.
