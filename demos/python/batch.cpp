@@ -281,7 +281,7 @@ py::dict derivative_rows(std::vector<BodyRef> a, std::vector<BodyRef> b, py::han
     } else {
       const DepthDerivatives found = depth_derivatives({shape_a, *pose_a}, {shape_b, *pose_b}, space.scratch);
       if (!is_finite(found.answer)) {
-        columns.error.numbers[i] = code_of(past_doubles());
+        columns.error.numbers[i] = code_of(past_doubles(""));
         return;
       }
       UnionDepth depth;
@@ -332,7 +332,7 @@ py::dict manifold_rows(std::vector<BodyRef> a, std::vector<BodyRef> b, py::handl
     const PenetrationDepth found = penetration_depth(first, second, space.scratch);
     const ContactManifold manifold = contact_manifold(first, second, found, threshold, space.manifold);
     if (!is_finite(manifold)) {
-      error.numbers[i] = code_of(past_doubles());
+      error.numbers[i] = code_of(past_doubles(""));
       return;
     }
     count.numbers[i] = static_cast<std::uint8_t>(manifold.count);

@@ -165,7 +165,7 @@ py::dict manifold_pair(const BodyRef& a, const BodyRef& b, py::handle pose_a, py
   const PosedShape second{&convex_of(*b, "b"), read_pose(pose_b, "pose_b")};
   const PenetrationDepth answer = penetration_depth(first, second, workspace().scratch);
   const ContactManifold manifold = contact_manifold(first, second, answer, threshold, workspace().manifold);
-  if (!is_finite(manifold)) refuse(past_doubles(), "pair");
+  if (!is_finite(manifold)) refuse(past_doubles(""), "pair");
   return contact_fields(manifold.normal, {manifold.points.begin(), manifold.points.begin() + manifold.count});
 }
 
@@ -176,7 +176,7 @@ py::dict derivatives_pair(const py::object& shape_a, const py::object& shape_b, 
     const Unlocked unlocked;
     return depth_derivatives(first, second, workspace().scratch);
   }();
-  if (!is_finite(found.answer)) refuse(past_doubles(), "pair");
+  if (!is_finite(found.answer)) refuse(past_doubles(""), "pair");
   const auto six = [](const PoseGradient& gradient) {
     Array array(6);
     for (int k = 0; k < 3; ++k) {
@@ -371,31 +371,9 @@ QuerySettings read_settings(py::handle method, py::handle delta, py::handle brac
   return settings;
 }
 
-Error past_doubles() {
-  return {ErrorCode::out_of_range, "the answer is past the range of doubles; bring the sizes nearer to each other", ""};
-}
-
-bool is_finite(const PenetrationDepth& x) {
-  for (const double number : {x.depth, x.lower, x.upper, x.distance, x.distance_lower, x.distance_upper}) {
-    if (!std::isfinite(number)) return false;
-  }
-  return x.translation.allFinite() && x.normal.allFinite() && x.witness_a.allFinite() && x.witness_b.allFinite();
-}
-
-bool is_finite(const ContactPoint& point) {
-  return std::isfinite(point.depth) && point.position_a.allFinite() && point.position_b.allFinite();
-}
-
-bool is_finite(const ContactManifold& manifold) {
-  return manifold.normal.allFinite() && std::all_of(manifold.points.begin(), manifold.points.begin() + manifold.count,
-                                                    [](const ContactPoint& point) { return is_finite(point); });
-}
-
 Expected<UnionDepth> ask(const Body& a, const Pose& pose_a, const Body& b, const Pose& pose_b,
                          const QuerySettings& settings, Workspace& space, PairMemory* memory) {
-  Expected<UnionDepth> answer = ask_any({a, pose_a}, {b, pose_b}, settings, space, memory);
-  if (answer && !is_finite(*answer)) return past_doubles();
-  return answer;
+  return finite_or_error(ask_any({a, pose_a}, {b, pose_b}, settings, space, memory));
 }
 
 py::dict contact_fields(const Vec3& normal, const std::vector<ContactPoint>& points) {

@@ -3,12 +3,12 @@
 #pragma once
 
 #include <atomic>
-#include <cmath>
 #include <string>
 #include <vector>
 
 #include "pd/compound/compound_depth.hpp"
 #include "pd/compound/warm_union.hpp"
+#include "pd/contact/finite_answer.hpp"
 #include "pd/contact/manifold.hpp"
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/depth/scratch.hpp"
@@ -56,21 +56,6 @@ struct QuerySettings {
 /// @param beyond  None: closest points at any distance. Unions are answered as if it were.
 /// @throws Refused bad_value with the known words.
 [[nodiscard]] QuerySettings read_settings(py::handle method, py::handle delta, py::handle bracket, py::handle beyond);
-
-/// The refusal of an answer that holds infinity or NaN, in the words of the line protocol.
-[[nodiscard]] Error past_doubles();
-[[nodiscard]] bool is_finite(const PenetrationDepth& answer);
-[[nodiscard]] bool is_finite(const ContactPoint& point);
-[[nodiscard]] bool is_finite(const ContactManifold& manifold);
-/// The answer of a directional depth, or why there is none.
-template <class Answer>
-[[nodiscard]] Expected<Answer> finite_or_error(const Expected<Answer>& answer) {
-  if (answer && !(std::isfinite(answer->depth) && std::isfinite(answer->lower) && std::isfinite(answer->upper) &&
-                  answer->normal.allFinite())) {
-    return past_doubles();
-  }
-  return answer;
-}
 
 /// Depth, or distance, of any two bodies. Holds no lock and may be called from any thread.
 /// @param memory  of the same two bodies; null: the pair is answered cold.

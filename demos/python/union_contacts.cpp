@@ -38,13 +38,13 @@ PieceBody pieces_of(const py::object& shape) {
   return PieceBody::of_compound(shape.cast<const Body&>().compound());
 }
 
-bool all_finite(const UnionManifold& manifold) {
-  return manifold.normal.allFinite() &&
+bool is_finite(const UnionManifold& manifold) {
+  return all_finite(manifold.normal) &&
          std::all_of(manifold.patches.begin(), manifold.patches.end(), [](const UnionContactPatch& patch) {
            const auto end = patch.points.begin() + static_cast<std::ptrdiff_t>(patch.count);
-           return patch.normal.allFinite() &&
+           return all_finite(patch.normal) &&
                   std::all_of(patch.points.begin(), end, [](const UnionContactPoint& point) {
-                    return point.normal.allFinite() && is_finite(point.contact);
+                    return all_finite(point.normal) && pd::is_finite(point.contact);
                   });
          });
 }
@@ -80,7 +80,7 @@ py::tuple union_manifold_pair(const py::object& a, const py::object& b, py::hand
     return union_manifold(posed_a, posed_b, settings, scratch);
   }();
   if (!found) refuse(to_string(found.error().code), found.error().message, found.error().where);
-  if (!all_finite(*found)) refuse(past_doubles(), "pair");
+  if (!is_finite(*found)) refuse(past_doubles(""), "pair");
   py::list patches;
   for (const UnionContactPatch& patch : found.value().patches) patches.append(fields_of(patch));
   if (patches.empty()) {

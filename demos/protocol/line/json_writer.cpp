@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "pd/contact/finite_answer.hpp"
 #include "support/refusal.hpp"
 
 namespace pd::query {
@@ -117,7 +118,8 @@ JsonWriter& JsonWriter::key(std::string_view name) {
 
 JsonWriter& JsonWriter::number(double value) {
   if (!std::isfinite(value)) {
-    refuse("out_of_range", "the answer is past the range of doubles; bring the sizes nearer to each other", "");
+    const Error error = past_doubles("");
+    refuse(to_string(error.code), error.message, error.where);
   }
   separate();
   append_number(out_, value);

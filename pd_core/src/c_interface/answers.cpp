@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "pd/compound/compound_depth.hpp"
+#include "pd/contact/finite_answer.hpp"
 #include "pd/contact/manifold.hpp"
 #include "pd/depth/derivatives.hpp"
 #include "pd/depth/penetration_depth.hpp"
@@ -113,20 +114,9 @@ pdepth_feature feature_of(const Feature& feature, std::int32_t part) {
   return {static_cast<std::int32_t>(feature.kind), part, feature.first, feature.second};
 }
 
-void require_finite(std::initializer_list<double> numbers, std::initializer_list<const Vec3*> vectors) {
-  double zero = 0;
-  for (const double x : numbers) zero += 0 * x;
-  for (const Vec3* v : vectors) zero += 0 * v->x() + 0 * v->y() + 0 * v->z();
-  if (zero == 0) return;
-  refuse(PDEPTH_OUT_OF_RANGE, "the answer is past the range of doubles; bring the sizes nearer to each other",
-         "question");
-}
-
 void write_depth(const PenetrationDepth& answer, pdepth_answer& out) {
   static_assert(static_cast<int>(ContactClass::overlapping) == PDEPTH_OVERLAPPING);
-  require_finite(
-      {answer.depth, answer.lower, answer.upper, answer.distance, answer.distance_lower, answer.distance_upper},
-      {&answer.translation, &answer.normal, &answer.witness_a, &answer.witness_b});
+  require_finite(is_finite(answer));
   out.status = PDEPTH_OK;
   out.contact = static_cast<std::int32_t>(answer.contact);
   out.method = static_cast<std::int32_t>(answer.method);
@@ -176,11 +166,7 @@ void ask_manifold(const Question& question, double breaking_threshold, Workspace
   const PenetrationDepth answer = convex_depth(question, space);
   const ContactManifold found =
       contact_manifold(question.posed_a, question.posed_b, answer, breaking_threshold, space.manifold);
-  require_finite({}, {&found.normal});
-  for (int i = 0; i < found.count; ++i) {
-    const ContactPoint& point = found.points[static_cast<std::size_t>(i)];
-    require_finite({point.depth}, {&point.position_a, &point.position_b});
-  }
+  require_finite(is_finite(found));
   out.status = PDEPTH_OK;
   out.contact = static_cast<std::int32_t>(answer.contact);
   out.count = found.count;
@@ -200,7 +186,7 @@ void ask_manifold(const Question& question, double breaking_threshold, Workspace
 void ask_derivatives(const Question& question, Workspace& space, pdepth_derivatives& out, pdepth_answer* answer) {
   question.require_convex();
   const DepthDerivatives found = depth_derivatives(question.posed_a, question.posed_b, space.scratch);
-  require_finite({found.signed_depth}, {});
+  require_finite(all_finite(found.signed_depth));
   if (answer != nullptr) write_depth(found.answer, *answer);
   out.status = PDEPTH_OK;
   out.reserved = 0;

@@ -2,16 +2,17 @@
 /// Questions of `pdepth.h` asked and their answers written, for one pair as for the rows of a batch.
 #pragma once
 
-#include <initializer_list>
-
 #include "c_interface/handles.hpp"
 #include "c_interface/reading.hpp"
+#include "pd/contact/finite_answer.hpp"
 #include "pd/depth/depth_answer.hpp"
 
 namespace pd::c_interface {
 
-/// Refuses an answer with numbers that doubles do not hold: sizes of bodies may lie too far apart.
-void require_finite(std::initializer_list<double> numbers, std::initializer_list<const Vec3*> vectors);
+/// Refuses an answer that is not finite.
+inline void require_finite(bool finite) {
+  if (!finite) refuse(past_doubles("question"), "");
+}
 /// Everything but the size, which the caller has set; refuses an answer that is not finite.
 void write_depth(const PenetrationDepth& answer, pdepth_answer& out);
 [[nodiscard]] pdepth_feature feature_of(const Feature& feature, std::int32_t part);

@@ -29,7 +29,7 @@ constexpr double kMaxAngle = 1e6;
 pdepth_directional directional_of(const auto& answer, std::int32_t part_a, std::int32_t part_b) {
   pdepth_directional out{};
   out.size = sizeof out;
-  require_finite({answer.depth, answer.lower, answer.upper}, {&answer.normal});
+  require_finite(is_finite(answer));
   out.contact = static_cast<std::int32_t>(answer.contact);
   out.depth = answer.depth;
   out.lower = answer.lower;
@@ -113,7 +113,7 @@ pdepth_support_answer ask_support(const PosedShape& body, const Vec3& direction)
 
 void require_finite_support(const pdepth_support_answer& answer) {
   const Vec3 point(answer.point[0], answer.point[1], answer.point[2]);
-  require_finite({answer.value}, {&point});
+  require_finite(all_finite(answer.value, point));
 }
 
 }  // namespace
@@ -211,7 +211,7 @@ pdepth_status pdepth_width(pdepth_context* context, const pdepth_shape* shape, c
     const ConvexShape* const body = given(shape, "shape").convex();
     if (body == nullptr) refuse(PDEPTH_UNSUPPORTED, "a width is that of a convex shape", "shape");
     const Width found = width({body, read_pose(pose, "pose")}, workspace_of(*context).scratch, method, read.delta);
-    require_finite({found.width, found.lower, found.upper}, {&found.normal});
+    require_finite(all_finite(found.width, found.lower, found.upper, found.normal));
     pdepth_width_answer result{sizeof out, found.bracket_reached ? 1 : 0, found.width, found.lower, found.upper, {}};
     write_vector(found.normal, result.normal);
     write_answer(result, out);
