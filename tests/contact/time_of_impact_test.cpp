@@ -279,4 +279,38 @@ TEST(TimeOfImpact, SaysWhereDoublesCannotTell) {
   EXPECT_LE(far.certified, far.time + 1e-5);
 }
 
+// A pose of doubles may touch where the motion is proved apart: the span before it is halved until the gap is small.
+TEST(TimeOfImpact, HitsAreWithinTheToleranceAsked) {
+  pd::Scratch scratch;
+  int hits = 0;
+  for (int k = 0; k < 400; ++k) {
+    std::mt19937_64 random(static_cast<std::uint64_t>(k));
+    std::uniform_real_distribution<double> size(0.2, 1), place(-1, 1);
+    const auto next = [&](auto& range) { return range(random); };
+    const auto shape = [&] {
+      const double radius = next(size), height = next(size);
+      const auto kind = random() % 4;
+      if (kind == 0) return *ConvexShape::cone(radius, height, 1);
+      if (kind == 1) return *ConvexShape::cylinder(radius, height, 2);
+      if (kind == 2) return *ConvexShape::ellipsoid(Vec3(radius, height, 0.5));
+      return ConvexShape(*ConvexPolytope::box(Vec3(radius, height, 0.5)));
+    };
+    const ConvexShape a = shape(), b = shape();
+    const auto vector = [&](double scale) {
+      const double x = next(place), y = next(place), z = next(place);
+      return Vec3(scale * x, scale * y, scale * z);
+    };
+    const Vec3 from = 3 * vector(1).normalized();
+    const MovingShape moving{{&a, Pose::from_trusted_matrix(pd::Mat3::Identity(), from)}, {-from, vector(3)}};
+    const auto hit = pd::time_of_impact(moving, {{&b, Pose()}, {Vec3::Zero(), vector(3)}}, 2, scratch);
+    if (!hit.hit || hit.time == 0) continue;
+    ++hits;
+    EXPECT_TRUE(hit.reached) << k;
+    EXPECT_LE(hit.contact.distance, 1e-9) << k;
+    EXPECT_EQ(hit.contact.contact, pd::ContactClass::separated) << k;
+    EXPECT_GE(hit.certified, hit.time) << k;
+  }
+  EXPECT_GT(hits, 300);
+}
+
 }  // namespace

@@ -104,6 +104,24 @@ class MovingPair {
     return latest;
   }
 
+  /// A time between one that is `apart` and one whose pose of doubles touches where the gap is within the tolerance, or
+  /// the last that was found apart. Moves there and asks. The span is halved.
+  [[nodiscard]] double last_apart(double apart, double touching) {
+    ask(apart);
+    while (clearance() > settings_.distance_tolerance && queries_ < settings_.max_queries) {
+      const double middle = 0.5 * (apart + touching);
+      if (!(middle > apart && middle < touching)) break;
+      ask(middle);
+      if (clearance() > 0) {
+        apart = middle;
+      } else {
+        touching = middle;
+        ask(apart);
+      }
+    }
+    return apart;
+  }
+
   [[nodiscard]] double rounding() const { return separation_->rounding(); }
   [[nodiscard]] const PenetrationDepth& answer() const { return answer_; }
   [[nodiscard]] int queries() const { return queries_; }
@@ -247,9 +265,8 @@ TimeOfImpact time_of_impact(const MovingShape& a, const MovingShape& b, double d
     pair.ask(time);
     // The pose of doubles may touch where the motion, proved apart, does not.
     if (pair.clearance() <= 0) {
-      time = proved;
       result.certified = next;
-      pair.ask(time);
+      time = pair.last_apart(proved, next);
       return finish(true, time, pair.clearance() <= settings.distance_tolerance);
     }
   }
