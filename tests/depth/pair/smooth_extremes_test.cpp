@@ -94,6 +94,31 @@ TEST(SmoothExtremes, PowersOfTwoChangeNoBit) {
   }
 }
 
+// Squares of such cores underflow beside such margins; lower ends were infinite.
+TEST(SmoothExtremes, MarginsFarBeyondTheCoresHaveRightBrackets) {
+  const Sphere spheres[] = {{{1, 0, 0}, 1}, {{0, 1, 0}, 0.5}};
+  const Vec3 segment[] = {{1, 0, 0}, {0, 1, 0}};
+  for (const double margin : {1e60, 1e90, 1e200, 1e250}) {
+    const ConvexShape cone = *ConvexShape::cone(1, 1, 1), capsule(*ConvexPolytope::from_points(segment));
+    for (const ConvexShape& core : {cone, *ConvexShape::hull_of_spheres(spheres)}) {
+      const ConvexShape cloud = *core.with_margin(margin);
+      for (const ConvexShape* const speck : {&cone, &capsule}) {
+        for (const Bracket bracket : {Bracket::tightest, Bracket::certified, Bracket::contact}) {
+          const PenetrationDepth answer = ask(*speck, cloud, Pose(), {.bracket = bracket});
+          SCOPED_TRACE(margin);
+          EXPECT_EQ(answer.contact, ContactClass::overlapping);
+          EXPECT_LE(answer.lower, margin * (1 + 1e-15));
+          EXPECT_GE(answer.lower, margin * (1 - 1e-12));
+          EXPECT_GE(answer.upper, margin * (1 - 1e-15));
+          EXPECT_LE(answer.upper, margin * (1 + 1e-12));
+          EXPECT_TRUE(answer.bracket_reached);
+          EXPECT_NEAR(answer.normal.norm(), 1, 1e-12);
+        }
+      }
+    }
+  }
+}
+
 TEST(SmoothExtremes, SizesBeyondAreRefusedByName) {
   for (const double size : {1e-300, 1e280}) {
     for (const auto& shape : {ConvexShape::ellipsoid({size, size, size}), ConvexShape::cylinder(size, 1, 0),

@@ -79,6 +79,8 @@ class SmoothQuery {
     if (for_contact_ && curved_on_facet(a_, b_, difference_, width_, warm_, out_)) return;
     buffers_.surface.clear();
     if (!solve_apart_from_memory() && !solve_by_inscribed_balls()) solve_by_expansion();
+    if (!proves_overlap()) [[unlikely]]
+      answer_within_reach();
     const double lower = out_.contact == ContactClass::overlapping ? out_.lower : out_.distance_lower;
     const double upper = out_.contact == ContactClass::overlapping ? out_.upper : out_.distance_upper;
     out_.bracket_reached = upper <= (1 + delta_) * lower * (1 + 0x1p-48);
@@ -116,6 +118,22 @@ class SmoothQuery {
           solve_apart(core);
         }
     }
+  }
+
+  /// False where bodies overlap beside margins so much larger than the cores that squares of lengths underflowed.
+  [[nodiscard]] bool proves_overlap() const {
+    if (out_.contact != ContactClass::overlapping || margin_ <= difference_.reach()) return true;
+    return out_.lower <= out_.upper && out_.normal.allFinite() && out_.witness_a.allFinite();
+  }
+
+  /// Takes any direction: the core of P lies within its reach.
+  [[gnu::cold, gnu::noinline]] void answer_within_reach() {
+    const Vec3 normal = Vec3::UnitX();
+    const DifferenceVertex farthest = difference_.support(normal, nullptr);
+    const double reach = difference_.reach() * (1 + 0x1p-50);
+    set_depth(margin_ - reach, margin_ + reach, normal);
+    out_.witness_a = difference_.points(farthest).a - margin_a_ * normal;
+    out_.witness_b = out_.witness_a + out_.translation;
   }
 
   SmoothFace nearest_face() {
