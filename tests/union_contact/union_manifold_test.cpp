@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -252,6 +253,42 @@ TEST_F(UnionManifolds, BadInputIsRefusedByName) {
   line.points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
   line.add({0, 1, 2});
   EXPECT_EQ(fault(line), "too_few_points faces");
+}
+
+// A part's contact that is turned to a facet far behind is no way out: this one was 1.52 times as long as the shortest.
+TEST_F(UnionManifolds, TheFirstPatchOfDeepUnionsIsAtMostHalfAsLongAgainAsTheirDepth) {
+  std::vector<Compound::Part> parts;
+  for (const Vec3& cell : std::vector<Vec3>{{0, 1, 0},
+                                            {1, 0, 0},
+                                            {1, 0, 1},
+                                            {1, 1, 0},
+                                            {1, 1, 1},
+                                            {1, 2, 0},
+                                            {1, 2, 1},
+                                            {2, 0, 0},
+                                            {2, 0, 1},
+                                            {2, 1, 0},
+                                            {2, 2, 0},
+                                            {2, 2, 1}}) {
+    parts.push_back({*ConvexPolytope::box(Vec3::Constant(0.5)), at(cell.x() + 0.5, cell.y() + 0.5, cell.z() + 0.5)});
+  }
+  const Compound cubes = *Compound::from_parts(parts);
+  const Compound hull(*ConvexPolytope::from_points(std::vector<Vec3>{
+      {2, 0, 1}, {-1, 1, 1}, {-1, -2, 0}, {1, -2, -2}, {0, 0, -1}, {-1, 2, 2}, {-2, -2, 0}, {-1, 0, -1}, {-2, -1, 1}}));
+  const Pose pose =
+      *Pose::from_quaternion({0.19090204454302068, 0.2453276862728082, -0.036004554482891374, -0.9497759776883249},
+                             Vec3(1.3236144022776464, -0.332289380302884, 2.816999718230179));
+  const auto depth = penetration_depth({&cubes, Pose()}, {&hull, pose}, scratch_.depth, UnionSettings());
+  ASSERT_TRUE(depth);
+  const PieceBody a = PieceBody::of_compound(cubes), b = PieceBody::of_compound(hull);
+  const UnionManifold found = ask({&a, Pose()}, {&b, pose});
+  ASSERT_FALSE(found.patches.empty());
+  double deepest = 0;
+  for (int i = 0; i < found.patches.front().count; ++i) {
+    deepest = std::max(deepest, found.patches.front().points[static_cast<std::size_t>(i)].contact.depth);
+  }
+  EXPECT_GE(deepest, depth->lower * (1 - 1e-9));
+  EXPECT_LE(deepest, 1.5 * depth->upper);
 }
 
 }  // namespace

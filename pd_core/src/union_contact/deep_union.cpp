@@ -10,6 +10,7 @@
 #include "pd/depth/directional_depth.hpp"
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/union_contact/union_piece.hpp"
+#include "union_contact/piece_exit.hpp"
 
 namespace pd {
 
@@ -63,6 +64,7 @@ PosedShape moved_by(const PosedShape& piece, const Vec3& way) {
 
 void DeepUnion::clear() {
   deepest_pair_.depth.depth = 0;
+  deepest_left_ = 0;
   own_ways_.clear();
   solid_.clear();
   thin_.clear();
@@ -73,6 +75,7 @@ void DeepUnion::add(const PiecesAnswer& answer, const ContactManifold& left) {
   if (depth.contact != ContactClass::overlapping) return;
   own_ways_.emplace_back(depth.depth, depth.normal);
   if (depth.depth > deepest_pair_.depth.depth) deepest_pair_ = answer;
+  if (left.count > 0) deepest_left_ = std::max(deepest_left_, detail::deepest_of(left));
   const double radius = std::min(bounding_radius(*answer.a.shape), bounding_radius(*answer.b.shape));
   const bool deep = depth.depth >= kDeep * radius;
   if (deep) solid_.add(depth, left);
@@ -87,6 +90,10 @@ void DeepUnion::DeepPairs::add(const PenetrationDepth& depth, const ContactManif
          std::any_of(normals.begin(), normals.end(),
                      [&](const Vec3& normal) { return normal.dot(left.normal) < kTogether; });
   normals.push_back(left.normal);
+}
+
+bool DeepUnion::needed() const {
+  return solid_.need_a_way() || (solid_.deepest > 0 && deepest_left_ > kShort * deepest_pair_.depth.depth);
 }
 
 bool DeepUnion::needed_in_step(double way, std::size_t num_pairs) const {

@@ -51,8 +51,9 @@ void Patches::add(const ContactManifold& manifold, int piece, int i, int j) {
   }
 }
 
-void Patches::keep_along(const Vec3& normal) {
-  std::erase_if(points_, [&](const Point& point) { return point.normal.dot(normal) < kAlong; });
+void Patches::keep_along(const Vec3& normal, double deepest) {
+  std::erase_if(points_,
+                [&](const Point& point) { return point.normal.dot(normal) < kAlong || point.contact.depth > deepest; });
 }
 
 void Patches::add(const PatchPoint& point, Patch& patch) {

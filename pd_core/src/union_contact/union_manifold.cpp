@@ -215,7 +215,8 @@ bool Asked::leave_as_one() {
     case DeepUnion::Outcome::nearly:
       break;
   }
-  patches_.keep_along(way.points.normal);
+  // A contact that is deeper than the way leads on where the bodies are apart already.
+  patches_.keep_along(way.points.normal, deepest_of(way.points));
   add(way.piece_a, way.piece_b, way.points);
   return true;
 }

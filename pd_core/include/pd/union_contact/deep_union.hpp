@@ -61,8 +61,9 @@ class DeepUnion {
   void add(const PiecesAnswer& answer, const ContactManifold& left);
   /// Tells whether the way out of the whole is to be asked for. Pieces are in each other by a quarter of the smaller
   /// one's radius or more. Either no contact of theirs is left, or those that are left lead more than 45 degrees apart
-  /// from each other or from the pieces' own answers.
-  [[nodiscard]] bool needed() const { return solid_.need_a_way(); }
+  /// from each other or from the pieces' own answers. One that is deeper than a way out may be (`nearly`) is a reason,
+  /// too.
+  [[nodiscard]] bool needed() const;
   /// Asks the same in a step. If few pieces are near and the bodies hardly move, a thin piece also counts as deep, from
   /// two fifths of its extent along its own way out.
   /// @param way        length by which the bodies come closer in the step
@@ -148,6 +149,7 @@ class DeepUnion {
   bool lead_out(const Exit& exit, double threshold, const DeepBuffers& buffers, Way& way) const;
 
   PiecesAnswer deepest_pair_;     ///< of all pieces
+  double deepest_left_ = 0;       ///< depth of the deepest contact that is left
   std::vector<OwnWay> own_ways_;  ///< of pieces in each other: how deep, along which normal
   DeepPairs solid_;               ///< deep by their radius
   DeepPairs thin_;                ///< those, and others deep by their extent

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -47,8 +48,8 @@ class Patches {
   [[nodiscard]] bool empty() const { return points_.empty(); }
   /// True if a point has a depth above 0. Time O(p) in p points.
   [[nodiscard]] bool overlap() const;
-  /// Drops the points whose normals are more than 60 degrees off `normal`.
-  void keep_along(const Vec3& normal);
+  /// Drops the points whose normals are more than 60 degrees off `normal`, and those deeper than `deepest`.
+  void keep_along(const Vec3& normal, double deepest = std::numeric_limits<double>::infinity());
 
   /// Sorts the points, deepest first, into at most `most` patches of normals no farther apart than 25 degrees; the last
   /// ones take the points that fit nowhere. Points that coincide are one. Four points of each patch are kept: the
