@@ -7,8 +7,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "body_argument.hpp"
@@ -65,11 +68,28 @@ struct CheckedMesh {
   query::MeshPoints mesh;
   SurfaceReport report;
   ConvexPolytope hull;
+  std::optional<Error> refusal = {};  ///< of the solid that the queries would make
 
   [[nodiscard]] double volume(double relative) const { return relative * std::pow(report.size, 3); }
   [[nodiscard]] double hull_volume() const { return report.size > 0 ? query::relative_volume(hull, report.size) : 0; }
   [[nodiscard]] bool encloses() const { return report.closed() && report.oriented(); }
 };
+
+/// Makes the solid that the queries would make, where the report shows no fault. A surface that lies inside of another
+/// part, and is no cavity, is found there.
+void make_solid(CheckedMesh& checked) {
+  SurfaceReport& report = checked.report;
+  if (report.faces == 0 || !report.crossings_searched || fault_of_solid(report)) return;
+  const MeshView mesh{checked.mesh.points, checked.mesh.faces.offsets, checked.mesh.faces.corners};
+  const auto solid = MeshSolid::from_checked(mesh, report);
+  if (solid) return;
+  checked.refusal = solid.error();
+  constexpr std::string_view kFaces = "faces[";
+  if (!solid.error().message.starts_with(to_string(MeshFault::inside_out))) return;
+  const auto face = static_cast<std::int32_t>(std::strtol(solid.error().where.c_str() + kFaces.size(), nullptr, 10));
+  report.counts[static_cast<std::size_t>(MeshFault::inside_out)] = 1;
+  report.findings.push_back({.fault = MeshFault::inside_out, .faces = {face, -1}});
+}
 
 CheckedMesh read_checked(const std::string& file) {
   query::MeshPoints mesh = read_mesh_argument(file, kMostChecked);
@@ -77,7 +97,9 @@ CheckedMesh read_checked(const std::string& file) {
   if (!report) query::refuse_file(file, report.error());
   auto hull = ConvexPolytope::from_points(mesh.points);
   if (!hull) query::refuse_file(file, hull.error());
-  return {file, std::move(mesh), *std::move(report), *std::move(hull)};
+  CheckedMesh checked{file, std::move(mesh), *std::move(report), *std::move(hull)};
+  make_solid(checked);
+  return checked;
 }
 
 /// The body as which the queries take the file.
@@ -91,12 +113,13 @@ constexpr const char* to_string(AskedAs as) {
 AskedAs asked_as(const CheckedMesh& checked) {
   if (checked.report.faces == 0) return AskedAs::hull;
   if (!query::why_hull(checked.report, checked.hull)) return AskedAs::convex;
-  const bool solid = checked.report.crossings_searched && !fault_of_solid(checked.report);
+  const bool solid = checked.report.crossings_searched && !fault_of_solid(checked.report) && !checked.refusal;
   return solid ? AskedAs::solid : AskedAs::refused;
 }
 
 /// The code of the refusal; the file is one that queries refuse.
 std::string refused_as(const CheckedMesh& checked) {
+  if (checked.refusal) return std::string(to_string(checked.refusal->code));
   const auto fault = fault_of_solid(checked.report);
   return fault ? std::string(to_string(fault->fault)) : "limit_exceeded";
 }
@@ -216,7 +239,10 @@ void print_report(const CheckedMesh& checked) {
   print_judged(
       checked, "outside", MeshFault::inside_out,
       checked.encloses() ? "faces show their outside" : "cannot be told before the surface is closed and oriented",
-      {"wrong way round:", "surface shows its inside; turn the faces", "surfaces show their inside; turn the faces"});
+      {"wrong way round:",
+       checked.refusal ? "surface lies inside of another part; a cavity shows its faces the other way"
+                       : "surface shows its inside; turn the faces",
+       "surfaces show their inside; turn the faces"});
   if (report.count(MeshFault::not_planar) > 0) {
     print_judged(checked, "flat", MeshFault::not_planar, "",
                  {"no:", "polygon whose corners lie in no plane", "polygons whose corners lie in no plane"});

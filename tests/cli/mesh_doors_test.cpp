@@ -440,7 +440,10 @@ TEST_F(MeshDoors, CheckSaysHowQueriesTakeTheFile) {
       {write("turned.obj", turned), "refused", "inside_out", "(inside_out): turn the faces, by \"turn_faces\":true"},
       {write("two.obj", text + "v 0.5 0.5 0.5\nv 0.7 0.5 0.5\nv 0.5 0.7 0.5\nv 0.5 0.5 2\n"
                                "f 9 11 10\nf 9 10 12\nf 9 12 11\nf 10 11 12\n"),
-       "refused", "self_crossing", "(self_crossing): mend the mesh"}};
+       "refused", "self_crossing", "(self_crossing): mend the mesh"},
+      {write("nested.obj", text + "v 0.5 0.5 0.5\nv 0.7 0.5 0.5\nv 0.5 0.7 0.5\nv 0.5 0.5 0.7\n"
+                                  "f 9 11 10\nf 9 10 12\nf 9 12 11\nf 10 11 12\n"),
+       "refused", "bad_faces", "(bad_faces): mend the mesh"}};
   for (const Case& c : cases) {
     expect_words(run("check '" + c.file + "'").out, {"queries", c.words});
     const Json told = Json::parse(run("check '" + c.file + "' --json").out);
