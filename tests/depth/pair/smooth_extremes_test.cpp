@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "pd/depth/penetration_depth.hpp"
 #include "pd/depth/scratch.hpp"
@@ -116,6 +117,25 @@ TEST(SmoothExtremes, MarginsFarBeyondTheCoresHaveRightBrackets) {
         }
       }
     }
+  }
+}
+
+// What is left of a translation less such margins is the rounding of both; it was taken for a place in the facet.
+TEST(RoundedExtremes, WitnessesOfSpecksBesideHugeMarginsAreFinite) {
+  const double size = 0x1p-781, margin = 0x1p546;
+  std::vector<Vec3> cone{{-2, -1, -2}, {-1, 1, 0}, {0, 2, 0}, {1, -2, 0}, {2, -1, 0}};
+  std::vector<Vec3> triangle{{-1, 2, -1}, {0, 2, 0}, {2, 1, 2}};
+  for (std::vector<Vec3>* const points : {&cone, &triangle}) {
+    for (Vec3& point : *points) point *= size;
+  }
+  const ConvexShape speck = *ConvexPolytope::from_points(cone);
+  const ConvexShape cloud = *ConvexShape(*ConvexPolytope::from_points(triangle)).with_margin(margin);
+  for (const Bracket bracket : {Bracket::tightest, Bracket::certified, Bracket::contact}) {
+    const PenetrationDepth answer = ask(speck, cloud, Pose(), {.bracket = bracket});
+    EXPECT_EQ(answer.contact, ContactClass::overlapping);
+    EXPECT_NEAR(answer.depth / margin, 1, 1e-12);
+    EXPECT_LE(answer.witness_a.cwiseAbs().maxCoeff(), 1e-15 * margin);
+    EXPECT_NEAR((answer.witness_b / margin).norm(), 1, 1e-12);
   }
 }
 

@@ -11,6 +11,9 @@ namespace pd::detail {
 
 namespace {
 
+/// Farther than any point of a pair, whose largest coordinate inside is at most 2^100.
+constexpr double kFar = 0x1p110;
+
 /// t + 2^exponent (first + sum of weight * (vertex - first)), rounded once: local coordinates and translations may both
 /// be large and cancel.
 Vec3 world_point(const PosedPair& pair, const Vec3& translation, const Vec3DD& first, const Vec3& rest) {
@@ -128,7 +131,8 @@ CorePoints witness_points_overlapping(const PosedPair& pair, const SupportFaces&
                                       const Vec3& translation) {
   const SupportFace& on_a = faces.on_a;
   const SupportFace& on_b = faces.on_b;
-  const Vec3 target = translation * pair.inwards();
+  // Beside margins many powers of ten larger, what is left of a translation is their rounding.
+  const Vec3 target = (translation * pair.inwards()).cwiseMax(-kFar).cwiseMin(kFar);
   // A vertex is where it is, whatever it lies on.
   const VertexPair first{on_a.front(), on_b.front()};
   const double whole = 1;
