@@ -51,7 +51,7 @@ class BodyReach {
   double reach_;
 };
 
-/// Whether two boxes may have a point in common: also where a corner is no number.
+/// Returns true if two boxes may have a point in common, and also if a corner is no number.
 inline bool boxes_meet(const btVector3& lower_a, const btVector3& upper_a, const btVector3& lower_b,
                        const btVector3& upper_b) {
   return !(lower_a.x() > upper_b.x() || upper_a.x() < lower_b.x() || lower_a.y() > upper_b.y() ||
@@ -92,7 +92,7 @@ class TrianglesAround {
   }
 
  private:
-  /// Of so few triangles each is compared; among more, the mesh's tree is asked.
+  /// Up to so many triangles are compared one by one; among more, the mesh's tree is asked.
   static constexpr std::size_t kFew = 256;
 
   const btConcaveShape* mesh_ = nullptr;

@@ -120,7 +120,7 @@ TEST(SmoothExtremes, MarginsFarBeyondTheCoresHaveRightBrackets) {
   }
 }
 
-// What is left of a translation less such margins is the rounding of both; it was taken for a place in the facet.
+// A translation less such margins is the rounding of both; it was taken for a place in the facet.
 TEST(RoundedExtremes, WitnessesOfSpecksBesideHugeMarginsAreFinite) {
   const double size = 0x1p-781, margin = 0x1p546;
   std::vector<Vec3> cone{{-2, -1, -2}, {-1, 1, 0}, {0, 2, 0}, {1, -2, 0}, {2, -1, 0}};

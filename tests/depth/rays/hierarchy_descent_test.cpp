@@ -167,7 +167,7 @@ TEST(HierarchyDescent, RefusesByName) {
   EXPECT_EQ(through.leave_upper, 1);
 }
 
-// What a caller hands over is looked at: null pointers, hierarchies of other bodies, and outer ones have no ray.
+// A caller may hand over null pointers, hierarchies of other bodies and outer ones; none of them has a ray.
 TEST(HierarchyDescent, HierarchiesThatAreNotTheBodiesAreRefused) {
   const ConvexPolytope box = *ConvexPolytope::box(Vec3(1, 1, 1));
   const ConvexPolytope large = *ConvexPolytope::box(Vec3(2, 1, 1));

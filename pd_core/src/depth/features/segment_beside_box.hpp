@@ -1,5 +1,5 @@
 /// @file
-/// Which face, edge or corner of a box a segment is nearest to, wherever along the segment.
+/// Tells which face, edge or corner of a box a segment is nearest to, wherever along the segment.
 ///
 /// In the box's own coordinates the squared distance of a point of the segment is a convex function of its place t,
 /// made of parabolas. Where it is least, the coordinates that lie outside the box's extent name the face, the edge or
@@ -12,7 +12,7 @@
 
 namespace pd::detail {
 
-/// Which side of the box each coordinate lies beyond, 0 within.
+/// Holds the side of the box that each coordinate lies beyond, 0 within.
 struct SidesOfBox {
   int of[3];
   bool operator==(const SidesOfBox&) const = default;

@@ -2,9 +2,9 @@
 /// A point or a segment (the cores of spheres and capsules) apart from a box, in closed form: over a face or an edge,
 /// beside a corner, wherever along the segment.
 ///
-/// Where the segment is nearest names the face, the edge or the corner (segment_beside_box.hpp). The rest is the height
-/// of an end over a face, or the distance of two segments (nearest_of_segments.hpp), bounded from below over the whole
-/// box: a wrong name gives a wide bracket and is passed on.
+/// The nearest place of the segment names the face, the edge or the corner (segment_beside_box.hpp). The rest is the
+/// height of an end over a face, or the distance of two segments (nearest_of_segments.hpp), bounded from below over the
+/// whole box: a wrong name gives a wide bracket and is passed on.
 #pragma once
 
 #include "depth/pair/polytope_depth.hpp"
